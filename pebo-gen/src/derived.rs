@@ -13,7 +13,7 @@ use pebo_design::search::{self, Found};
 #[cfg(feature = "yaml")]
 use pebo_design::source::Source;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
-use pebo_lab::settings::Tuned;
+use pebo_lab::settings::DerivedSettings;
 
 /// A model with everything that was derived of it.
 #[derive(Debug)]
@@ -124,7 +124,7 @@ impl Derived {
     /// With it what is wrong with the section.
     fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
         let mut problems = Diagnostics::default();
-        let tuned = Tuned::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
+        let tuned = DerivedSettings::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
         let settings = tuned.map(|tuned| tuned.settings);
         (settings.filter(|_| !problems.has_errors()), problems.into_vec())
     }

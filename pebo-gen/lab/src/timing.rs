@@ -4,7 +4,7 @@ use pebo_cas::Rational;
 use pebo_design::model::{Simulation, Spanned};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::Overrides;
+use crate::overrides::Overrides;
 
 /// A run of that many samples takes minutes; one of more, hours.
 pub(super) const MOST_SAMPLES: f64 = 2e8;
@@ -41,7 +41,7 @@ impl Timing {
         for (name, period) in [("step", Some(&step)), ("every", every.as_ref())] {
             let Some(period) = period else { continue };
             if (&duration.seconds - &period.seconds).is_negative() {
-                let message = format!("{} is longer than the duration of {} s", period.said(name), duration.to_f64());
+                let message = format!("{} is longer than the duration of {} s", period.named(name), duration.to_f64());
                 problems.push(
                     Diagnostic::error(Code::NumberOutOfRange, period.span, message)
                         .help(format!("choose a shorter `{name}`, or a longer `duration`")),
@@ -53,7 +53,7 @@ impl Timing {
         if intervals > MOST_SAMPLES {
             let message = format!(
                 "the simulation has {intervals:.3e} samples: {} is too short for a duration of {} s",
-                step.said("step"),
+                step.named("step"),
                 duration.to_f64()
             );
             problems.push(
@@ -138,7 +138,7 @@ impl Setting {
     }
 
     /// The setting as messages call it.
-    fn said(&self, name: &str) -> String {
+    fn named(&self, name: &str) -> String {
         let whose = if self.span == Span::NOWHERE { " of the call" } else { "" };
         let seconds = self.to_f64();
         // Without exponent, numbers far from 1 are rows of zeros.

@@ -5,8 +5,8 @@ use pebo_design::model::Simulation;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
 use super::layout::{baseline_estimates, time};
-use super::overrides::Overrides;
 use super::scope::{Estimates, Names, Sight, View};
+use crate::overrides::Overrides;
 
 /// Whose estimates the control law sees.
 pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diagnostics) -> Option<String> {
@@ -38,7 +38,7 @@ pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
 }
 
 /// What `hat(x)` is in the control law.
-fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
+fn visible_estimates(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
     let arena = &names.plant.arena;
     match feedback {
         Simulation::OBSERVER => hats.clone(),
@@ -53,7 +53,8 @@ fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
 
 /// The inputs in outputs, estimates and signals; the time, which is the last of them, is as it is.
 pub(crate) fn law(names: &Names, feedback: &str, hats: &Estimates, problems: &mut Diagnostics) -> Vec<Expr> {
-    let scope = names.scope(&View { sight: Sight::Outputs, hats: seen(names, feedback, hats), ..View::default() });
+    let scope =
+        names.scope(&View { sight: Sight::Outputs, hats: visible_estimates(names, feedback, hats), ..View::default() });
     let (plant, arena) = (names.plant, &names.plant.arena);
     let wanted: Vec<_> = plant.commanded().collect();
     let mut inputs = names.entries(&scope, &wanted, ("control", &names.simulation.control), problems);

@@ -13,9 +13,9 @@ use pebo_design::source::Diagnostic;
 
 use super::failure::Failure;
 use super::layout::TIME;
-use super::panels::Panel;
 use super::scenario::Scenario;
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use crate::figure::{Band, Sheet};
 use crate::summary::{Estimate, Summary, short, table};
 use crate::timing::real;

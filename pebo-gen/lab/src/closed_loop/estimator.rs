@@ -9,10 +9,10 @@ use crate::settings::BANDWIDTH;
 use pebo_design::model::{Decimal, Estimator, Model, Observer, Spanned};
 use pebo_design::source::Span;
 
-use super::overrides::Overrides;
+use crate::overrides::Overrides;
 
 /// The model with the estimator of the call.
-pub(crate) fn changed<'a>(model: &'a Model, overrides: &Overrides) -> Cow<'a, Model> {
+pub(crate) fn overridden<'a>(model: &'a Model, overrides: &Overrides) -> Cow<'a, Model> {
     let Some(estimator) = overrides.estimator else { return Cow::Borrowed(model) };
     let of_file = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let step = overrides.step.or(of_file.map(|step| step.value.to_f64()));
@@ -81,7 +81,7 @@ fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
 }
 
 /// The estimator with its settings, as a file would have them.
-pub(crate) fn told(observer: &Observer) -> String {
+pub(crate) fn estimator_text(observer: &Observer) -> String {
     let one = |number: &Option<Spanned<Decimal>>| number.iter().cloned().collect::<Vec<_>>();
     let settings = [
         ("gain", observer.gain.clone()),

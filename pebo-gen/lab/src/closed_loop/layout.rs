@@ -8,8 +8,10 @@ use std::ops::Range;
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::model::{Baseline, Entry, Simulation};
 use pebo_design::plant::Plant;
-use pebo_design::program::{Program, lower};
-use pebo_design::source::{Code, Diagnostic, Span};
+use pebo_design::program::Program;
+use pebo_design::source::{Diagnostic, Span};
+
+use crate::observe::design::program;
 
 /// The position of time.
 pub(crate) const TIME: usize = 0;
@@ -26,16 +28,16 @@ pub(crate) struct Layout {
     /// The outputs as they are.
     pub(crate) y: Range<usize>,
     pub(crate) u: Range<usize>,
-    /// The time as observers are told it, which then is the last of the inputs.
-    pub(crate) told: Option<usize>,
+    /// The time as observers are measured_time it, which then is the last of the inputs.
+    pub(crate) measured_time: Option<usize>,
     /// The observer's estimates.
     pub(crate) hat: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
-    pub(crate) rivals: Range<usize>,
+    pub(crate) baseline_estimates: Range<usize>,
     /// Signals, then the courses of what is true of the plant.
     pub(crate) signals: Range<usize>,
     /// The last sample of each output that arrived; empty where sensors are perfect.
-    pub(crate) shown: Range<usize>,
+    pub(crate) last_samples: Range<usize>,
 }
 
 impl Layout {
@@ -57,19 +59,31 @@ impl Layout {
             .collect());
         let u = add(plant.u.clone());
         let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
-        let rivals = add(baselines().flat_map(|b| baseline_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
+        let baseline_hats =
+            add(baselines().flat_map(|b| baseline_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
         let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
         let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
         let signals = add(signals.chain(courses).collect());
         let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
-        let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
-        let told = plant.time.map(|_| u.end - 1);
-        Self { symbols, state: x.start..own.end, x, y, u, told, hat, rivals, signals, shown }
+        let last_samples = add(imperfect.map(|output| last_sample(arena, &arena.name(output.symbol))).collect());
+        let measured_time = plant.time.map(|_| u.end - 1);
+        Self {
+            symbols,
+            state: x.start..own.end,
+            x,
+            y,
+            u,
+            measured_time,
+            hat,
+            baseline_estimates: baseline_hats,
+            signals,
+            last_samples,
+        }
     }
 
     /// The inputs but for the time.
     pub(crate) fn commanded(&self) -> Range<usize> {
-        self.u.start..self.told.unwrap_or(self.u.end)
+        self.u.start..self.measured_time.unwrap_or(self.u.end)
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
@@ -83,15 +97,7 @@ impl Layout {
     }
 }
 
-/// A program; a symbol without a value is a diagnostic at `span`.
-pub(crate) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
-    lower(arena, inputs, outputs).map_err(|undeclared| {
-        let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
-        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
-    })
-}
-
-/// Time as it is; what observers are told of it is an input. No declared name is `t` where there is a simulation.
+/// Time as it is; what observers are measured_time of it is an input. No declared name is `t` where there is a simulation.
 pub(crate) fn time(arena: &Arena) -> Symbol {
     arena.generated("t")
 }
@@ -102,7 +108,7 @@ pub(crate) fn course(arena: &Arena, name: &str) -> Symbol {
 }
 
 /// The last sample of an output that arrived.
-pub(crate) fn shown(arena: &Arena, output: &str) -> Symbol {
+pub(crate) fn last_sample(arena: &Arena, output: &str) -> Symbol {
     arena.generated(&format!("shown({output})"))
 }
 

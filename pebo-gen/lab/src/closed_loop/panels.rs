@@ -7,52 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::Scale;
-use pebo_design::plant::{Plant, lower};
+use pebo_design::plant::lower;
 use pebo_design::source::Diagnostics;
 
 use super::baseline::ResolvedBaseline;
-use super::layout::{estimate, baseline_estimate};
+use super::layout::{baseline_estimate, estimate};
 use super::scope::{Estimates, Names, Sight, View};
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use crate::figure::unit;
-
-/// A part of the figure.
-#[derive(Debug)]
-pub(crate) struct Panel {
-    pub(crate) title: String,
-    pub(crate) unit: Option<String>,
-    pub(crate) scale: Scale,
-    /// The labels of its curves.
-    pub(crate) curves: Vec<Label>,
-}
-
-impl Panel {
-    /// Signals that stand on one axis: on a linear one, those of one unit. A flow in cubic metres per second is flat at zero
-    /// beside a temperature in kelvin.
-    pub(crate) fn groups<C>(plant: &Plant, scale: Scale, curves: Vec<C>, symbol: impl Fn(&C) -> Symbol) -> Vec<Vec<C>> {
-        let mut groups: Vec<(Option<&String>, Vec<C>)> = Vec::new();
-        for curve in curves {
-            let unit = Some(symbol(&curve)).filter(|_| scale == Scale::Linear).and_then(|s| plant.units.get(&s));
-            match groups.iter_mut().find(|(known, _)| *known == unit) {
-                Some((_, group)) => group.push(curve),
-                None => groups.push((unit, vec![curve])),
-            }
-        }
-        groups.into_iter().map(|(_, group)| group).collect()
-    }
-
-    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
-    pub(crate) fn of_signals(plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label)>) -> Self {
-        let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
-        let unit = unit::same(curves.iter().map(|curve| unit_of(&curve.0))).map(str::to_owned);
-        let labelled = |(symbol, label): (Symbol, Label)| match unit_of(&symbol).filter(|_| unit.is_none()) {
-            Some(unit) => label.in_unit(unit),
-            None => label,
-        };
-        let curves = curves.into_iter().map(labelled).collect();
-        Self { title: title.to_owned(), unit, scale, curves }
-    }
-}
 
 /// The panels, and the values of their curves one after the other.
 #[derive(Debug, Default)]
@@ -67,10 +30,10 @@ impl Panels {
         names: &Names,
         hats: &Estimates,
         errors: &[Expr],
-        rivals: &[ResolvedBaseline],
+        baselines: &[ResolvedBaseline],
         problems: &mut Diagnostics,
     ) -> Self {
-        let mut pass = PanelResolver { names, hats, rivals, found: Self::default() };
+        let mut pass = PanelResolver { names, hats, baselines, found: Self::default() };
         if names.simulation.panels.is_empty() {
             pass.usual(errors);
         } else {
@@ -83,7 +46,7 @@ impl Panels {
 struct PanelResolver<'a> {
     names: &'a Names<'a>,
     hats: &'a Estimates,
-    rivals: &'a [ResolvedBaseline],
+    baselines: &'a [ResolvedBaseline],
     found: Panels,
 }
 
@@ -121,7 +84,7 @@ impl PanelResolver<'_> {
         let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
         let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
         let inputs = plant.commanded().map(named).collect();
-        self.signals("DynObserver errors", Scale::Log, errors);
+        self.signals("Estimation errors", Scale::Log, errors);
         self.signals("Outputs", Scale::Linear, outputs);
         self.signals("Inputs", Scale::Linear, inputs);
     }
@@ -145,9 +108,9 @@ impl PanelResolver<'_> {
         for (label, value) in curves {
             labels.push(label.clone());
             self.found.values.push(value);
-            for rival in self.rivals {
-                if let Some(other) = through(self.names, self.hats, value, rival) {
-                    labels.push(label.clone().remark(&rival.name));
+            for baseline in self.baselines {
+                if let Some(other) = through(self.names, self.hats, value, baseline) {
+                    labels.push(label.clone().remark(&baseline.name));
                     self.found.values.push(other);
                 }
             }
@@ -157,11 +120,11 @@ impl PanelResolver<'_> {
 }
 
 /// The value with a baseline's estimates in place of the observer's, if there are any in it and it has them all.
-fn through(names: &Names, hats: &Estimates, value: Expr, rival: &ResolvedBaseline) -> Option<Expr> {
+fn through(names: &Names, hats: &Estimates, value: Expr, baseline: &ResolvedBaseline) -> Option<Expr> {
     let arena = &names.plant.arena;
     let symbols: BTreeSet<Symbol> = hats.iter().filter_map(|(_, hat)| arena.as_symbol(*hat)).collect();
-    let own: BTreeMap<Symbol, Expr> = (rival.estimates.iter())
-        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(baseline_estimate(arena, &rival.name, state))))
+    let own: BTreeMap<Symbol, Expr> = (baseline.estimates.iter())
+        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(baseline_estimate(arena, &baseline.name, state))))
         .collect();
     let replaced = arena.substitute(value, &own);
     (arena.depends_on(value, &symbols) && !arena.depends_on(replaced, &symbols)).then_some(replaced)

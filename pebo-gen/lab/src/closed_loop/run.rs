@@ -1,11 +1,11 @@
 //! The loop, sample by sample.
 //!
 //! ```text
-//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
+//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, measured_time of u_0 -> u_1 -> ..
 //! ```
 //!
 //! Between y and the observers are the sensors, whose samples may be late, wrong, or not there. With jitter the instants
-//! move, at which the loop samples and sets its inputs; observers are told the period that is meant.
+//! move, at which the loop samples and sets its inputs; observers are measured_time the period that is meant.
 
 use std::ops::ControlFlow;
 
@@ -16,16 +16,16 @@ use super::failure::Failure;
 use super::growth::Growth;
 use super::layout::TIME;
 use super::ode::Flow;
-use super::ode::equation::Stuck;
-use super::scenario::{ScoredEstimate, Scenario};
+use super::ode::equation::Standstill;
+use super::scenario::{Scenario, ScoredEstimate};
 use super::sensor::{SensorState, instant};
 use super::signal::SignalCursor;
 use super::trace::Trace;
 use crate::figure::curve::Curve;
 use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::ObserverDriver;
 use crate::score::Scorer;
 use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary};
@@ -40,7 +40,7 @@ impl Scenario {
         self.run_while(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// The same, but for a caller who is told now and then which part is done, 0 to 1, and may end it there with
+    /// The same, but for a caller who is measured_time now and then which part is done, 0 to 1, and may end it there with
     /// [`Failure::Stopped`].
     pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
         let mut record = Record::new(self);
@@ -77,8 +77,8 @@ impl Scenario {
             }
             show(sample, Snapshot { table, errors });
             if sample % stride == 0 || sample == samples {
-                watch.look(table[TIME], &machine.stepping.observer.said());
-                let predicted = machine.stepping.standard_errors();
+                watch.look(table[TIME], &machine.driver.observer.component_information());
+                let predicted = machine.driver.standard_errors();
                 certain.look(table[TIME], predicted.as_deref());
                 expected.add(table[TIME], predicted);
             }
@@ -90,18 +90,24 @@ impl Scenario {
             let score = score.finish();
             let own = scored.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: outside[place] }
+            EstimateScore {
+                estimate: scored.estimate.clone(),
+                score,
+                expected,
+                step: scored.step,
+                outside: outside[place],
+            }
         };
         Ok(Summary {
             end: machine.table[TIME],
             samples,
             estimates: self.scored.iter().zip(&scores).enumerate().map(rated).collect(),
             excitation: watch.excitation(&self.design.unknown_names),
-            faults: machine.stepping.faults().clone(),
-            dropped: machine.stepping.dropped(),
-            parted: machine.stepping.parted(),
-            restarts: machine.stepping.restarts(),
-            surprise: machine.stepping.surprise(),
+            faults: machine.driver.faults().clone(),
+            dropped: machine.driver.dropped(),
+            parted: machine.driver.parted(),
+            restarts: machine.driver.restarts(),
+            surprise: machine.driver.surprise(),
             certainty: certain.certainty(),
             known: self.design.settings.known.clone(),
         })
@@ -141,14 +147,14 @@ pub(crate) struct LoopState<'a> {
     scenario: &'a Scenario,
     /// All values, see [`Layout`](super::layout::Layout).
     pub(crate) table: Vec<f64>,
-    pub(crate) stepping: ObserverDriver,
+    pub(crate) driver: ObserverDriver,
     flow: Flow,
     growth: Growth,
-    sensing: SensorState<'a>,
+    sensor_state: SensorState<'a>,
     signals: Vec<SignalCursor>,
     given: Formulas,
     measured: Formulas,
-    rivals: Formulas,
+    baselines: Formulas,
     followers: Vec<Box<dyn Follower>>,
     control: Formulas,
 }
@@ -162,8 +168,8 @@ impl<'a> LoopState<'a> {
         let mut machine = Self {
             scenario,
             table: vec![0.0; layout.symbols.len()],
-            stepping: ObserverDriver::new(observer(&scenario.design).map_err(refused)?),
-            sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
+            driver: ObserverDriver::new(observer(&scenario.design).map_err(refused)?),
+            sensor_state: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 (&scenario.rates, Some(&scenario.slopes)),
                 scenario.switches.as_ref(),
@@ -176,7 +182,7 @@ impl<'a> LoopState<'a> {
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
             given: Formulas::new(&scenario.given.1),
             measured: Formulas::new(&scenario.measured),
-            rivals: Formulas::new(&scenario.rivals),
+            baselines: Formulas::new(&scenario.baseline_estimates),
             followers: Vec::new(),
             control: Formulas::new(&scenario.control),
         };
@@ -186,7 +192,7 @@ impl<'a> LoopState<'a> {
         for _ in 0..2 {
             let state = start.of(&machine.table);
             machine.table[layout.state.clone()].copy_from_slice(state);
-            machine.sensing = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
+            machine.sensor_state = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
             machine.measure(0);
         }
         machine.admit(layout.state.clone())?;
@@ -202,8 +208,8 @@ impl<'a> LoopState<'a> {
     pub(crate) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
         let Scenario { timing, jitter, seed, .. } = self.scenario;
         let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
-        if let Err(stuck) = self.flow.advance(&mut self.table, from, to) {
-            return Err(self.stuck(stuck));
+        if let Err(standstill) = self.flow.advance(&mut self.table, from, to) {
+            return Err(self.standstill(standstill));
         }
         self.table[TIME] = to;
         self.read_signals();
@@ -212,9 +218,9 @@ impl<'a> LoopState<'a> {
             self.table[*position] = *value;
         }
         let arrives = self.measure(sample);
-        if let Some(told) = self.scenario.layout.told {
-            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is told.
-            self.table[told] = timing.at(sample) - timing.step / 2.0;
+        if let Some(measured_time) = self.scenario.layout.measured_time {
+            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is measured_time.
+            self.table[measured_time] = timing.at(sample) - timing.step / 2.0;
         }
         let state = self.scenario.layout.state.clone();
         self.admit(state.clone())
@@ -231,7 +237,7 @@ impl<'a> LoopState<'a> {
     }
 
     /// Why the integration came to a stand.
-    fn stuck(&self, Stuck { steps, at, state, fast }: Stuck) -> Failure {
+    fn standstill(&self, Standstill { steps, at, state, fast }: Standstill) -> Failure {
         let slow = fast.map(|(place, rate)| Failure::Slow {
             at,
             steps,
@@ -267,9 +273,9 @@ impl<'a> LoopState<'a> {
     /// Lets the sensors take this sample, which `measured` then has; whether it arrives.
     fn measure(&mut self, sample: u64) -> bool {
         let layout = &self.scenario.layout;
-        let (before, after) = self.table.split_at_mut(layout.shown.start);
-        let (outputs, shown) = (&before[layout.y.clone()], &mut after[..layout.shown.len()]);
-        let arrives = self.sensing.sample(sample, before[TIME], outputs, shown);
+        let (before, after) = self.table.split_at_mut(layout.last_samples.start);
+        let (outputs, last_samples) = (&before[layout.y.clone()], &mut after[..layout.last_samples.len()]);
+        let arrives = self.sensor_state.sample(sample, before[TIME], outputs, last_samples);
         self.measured.of(&self.table);
         arrives
     }
@@ -281,22 +287,22 @@ impl<'a> LoopState<'a> {
             follower.write(&mut self.table[place.clone()]);
             self.admit(place.clone())?;
         }
-        let estimates = self.rivals.of(&self.table);
-        self.table[layout.rivals.clone()].copy_from_slice(estimates);
+        let estimates = self.baselines.of(&self.table);
+        self.table[layout.baseline_estimates.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
         let y = &mut self.measured.values;
-        if self.stepping.observer.admits_partial() {
+        if self.driver.observer.admits_partial() {
             self.scenario.sensors.leave_out(sample, y);
         }
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
         let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
         if !arrives {
-            self.stepping.miss(u, step);
+            self.driver.miss(u, step);
             return Ok(());
         }
-        match self.stepping.arrive(y, u, step, hat) {
-            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+        match self.driver.arrive(y, u, step, hat) {
+            Err(fault) if self.driver.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
             _ => Ok(()),
         }
     }
@@ -353,7 +359,7 @@ impl<'a> Record<'a> {
         for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
             self.rows.extend([*hat, *error]);
         }
-        self.rows.extend(&table[layout.rivals.clone()]);
+        self.rows.extend(&table[layout.baseline_estimates.clone()]);
     }
 
     fn finish(self, summary: Summary) -> Trace {

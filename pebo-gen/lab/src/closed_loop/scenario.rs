@@ -15,20 +15,21 @@ use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_runtime::Fault;
 
-use super::baseline::{ResolvedBaseline, NamedBaseline};
-use super::changed::{changed, told};
+use super::baseline::{NamedBaseline, ResolvedBaseline};
+use super::estimator::{estimator_text, overridden};
 use super::failure::Failure;
-use super::layout::{Layout, estimate, program, baseline_estimate};
+use super::layout::{Layout, baseline_estimate, estimate};
 use super::ode::switching::{SwitchPrograms, Switches};
-use super::overrides::Overrides;
-use super::panel::{Panel, Panels};
+use super::panels::Panels;
 use super::scope::{Estimates, Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
 use super::trace::Trace;
 use super::truth::Truth;
 use super::{control, ode};
-use crate::observe::design::Design;
+use crate::figure::panel::Panel;
+use crate::observe::design::{Design, program};
+use crate::overrides::Overrides;
 use crate::summary::advice::{Origin, advise};
 use crate::summary::{Estimate, Summary};
 use crate::timing::Timing;
@@ -62,7 +63,7 @@ pub struct Scenario {
     /// In what the plant and its sensors differ from what the model says: keys of the section.
     pub(crate) departures: Vec<&'static str>,
     /// The first state that is given a course, if no parameter is.
-    moved: Option<String>,
+    moving_state: Option<String>,
     /// The rates of the state.
     pub(crate) rates: Program,
     /// Their derivatives by the state, by rows, with signs held.
@@ -70,7 +71,7 @@ pub struct Scenario {
     /// The signs in them, if there are any.
     pub(crate) switches: Option<SwitchPrograms>,
     /// The baselines' estimates.
-    pub(crate) rivals: Program,
+    pub(crate) baseline_estimates: Program,
     /// Baselines that are fed samples, with where they write their estimates.
     pub(crate) followers: Vec<(Range<usize>, NamedBaseline)>,
     /// The inputs.
@@ -115,7 +116,7 @@ impl Scenario {
     ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let mut problems = Diagnostics::new();
-        let model = &*changed(model, overrides);
+        let model = &*overridden(model, overrides);
         let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let names = Names { model, simulation, plant };
         let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);
@@ -138,7 +139,7 @@ impl Scenario {
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
         advise(
             summary,
-            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())),
+            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moving_state.as_deref())),
             self.span,
         )
     }
@@ -210,11 +211,14 @@ impl Resolution<'_> {
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
         let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
-        let mut rivals: Vec<ResolvedBaseline> =
-            simulation.baselines.iter().filter_map(|entry| ResolvedBaseline::resolve(&names, entry, problems)).collect();
+        let mut baselines: Vec<ResolvedBaseline> = simulation
+            .baselines
+            .iter()
+            .filter_map(|entry| ResolvedBaseline::resolve(&names, entry, problems))
+            .collect();
         let truth = Truth::resolve(&names, problems);
-        let start = start(&names, &truth, &rivals, problems);
-        let rates = rates(&names, &truth, &rivals, problems);
+        let start = start(&names, &truth, &baselines, problems);
+        let rates = rates(&names, &truth, &baselines, problems);
         let (timing, mut design, mut rates) = (timing?, design?, rates?);
 
         let hats: Estimates = design
@@ -226,7 +230,7 @@ impl Resolution<'_> {
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
         let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
-        let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
+        let panels = Panels::resolve(&names, &hats, &errors, &baselines, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
@@ -242,21 +246,22 @@ impl Resolution<'_> {
         if let Some(share) = overrides.initial_error {
             begin(&names, (&layout, &signals), &start, share, &mut design.settings.chi_0);
         }
-        let columns = columns(plant, &design.recovered, &rivals);
+        let columns = columns(plant, &design.recovered, &baselines);
         problems.keep(admit_table(&timing, columns.len()));
-        let followers = followers(plant, &layout, &mut rivals);
-        let estimates: Vec<Expr> = rivals.iter().flat_map(|rival| rival.estimates.iter().map(|e| e.1)).collect();
+        let followers = followers(plant, &layout, &mut baselines);
+        let estimates: Vec<Expr> =
+            baselines.iter().flat_map(|baseline| baseline.estimates.iter().map(|e| e.1)).collect();
         let outputs = plant.y.iter().map(|output| output.symbol);
         let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
         let (scored, errors) =
-            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
+            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &baselines);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
-            estimator: told(&names.model.observer),
+            estimator: estimator_text(&names.model.observer),
             feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
             start: compile(&start)?,
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
@@ -264,12 +269,12 @@ impl Resolution<'_> {
             sensors,
             jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
             departures: simulation.departures(),
-            moved: moved(&names),
+            moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
             slopes: compile(&slopes(arena, &rates, state))?,
             switches: switches?,
-            rivals: compile(&estimates)?,
+            baseline_estimates: compile(&estimates)?,
             followers,
             control: compile(&control)?,
             scored,
@@ -289,14 +294,14 @@ impl Resolution<'_> {
 }
 
 /// The first state that `plant` gives a course, if it names no parameter.
-fn moved(names: &Names) -> Option<String> {
+fn moving_state(names: &Names) -> Option<String> {
     let of_plant = || names.simulation.plant.iter().map(|entry| &entry.name.value);
     let is_state = |name: &&String| names.model.x.iter().any(|state| state.value == **name);
     of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
 }
 
 /// x, y and the baselines' states at the start, where the inputs are still 0.
-fn start(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
+fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
     let states: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
@@ -308,7 +313,7 @@ fn start(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &m
         values.insert(states[place], arena.substitute(value, &values));
     }
     let all: Vec<Expr> = states.into_iter().map(|symbol| arena.of_symbol(symbol)).collect();
-    let others = rivals.iter().flat_map(|rival| rival.start.iter().copied());
+    let others = baselines.iter().flat_map(|baseline| baseline.start.iter().copied());
     arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
 }
 
@@ -335,7 +340,12 @@ fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr],
 }
 
 /// The rates of x, y and the baselines' states; of what is not integrated, 0.
-fn rates(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
+fn rates(
+    names: &Names,
+    truth: &Truth,
+    baselines: &[ResolvedBaseline],
+    problems: &mut Diagnostics,
+) -> Option<Vec<Expr>> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
     let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
@@ -354,7 +364,7 @@ fn rates(names: &Names, truth: &Truth, rivals: &[ResolvedBaseline], problems: &m
         }
     }
     let mut found = truth.of_plant(names, &found);
-    let others: Vec<Expr> = rivals.iter().flat_map(|rival| rival.rates.iter().copied()).collect();
+    let others: Vec<Expr> = baselines.iter().flat_map(|baseline| baseline.rates.iter().copied()).collect();
     found.extend(truth.between_samples(names, &others));
     (!problems.has_errors()).then_some(found)
 }
@@ -365,15 +375,15 @@ fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
 }
 
 /// The baselines that are fed samples, with where they write.
-fn followers(plant: &Plant, layout: &Layout, rivals: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
+fn followers(plant: &Plant, layout: &Layout, baselines: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
     let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
-    let follower = |rival: &mut ResolvedBaseline| {
-        let sampled = rival.sampled.take()?;
-        let symbol = baseline_estimate(&plant.arena, &rival.name, &first);
+    let follower = |baseline: &mut ResolvedBaseline| {
+        let sampled = baseline.sampled.take()?;
+        let symbol = baseline_estimate(&plant.arena, &baseline.name, &first);
         let start = layout.symbols.iter().position(|known| *known == symbol)?;
         Some((start..start + plant.x.len(), sampled))
     };
-    rivals.iter_mut().filter_map(follower).collect()
+    baselines.iter_mut().filter_map(follower).collect()
 }
 
 /// Up to what states are known.
@@ -417,18 +427,18 @@ pub(crate) fn scored(
     (plant, table): (&Plant, &[Symbol]),
     periods: &Periods,
     hats: &Estimates,
-    rivals: &[ResolvedBaseline],
+    baselines: &[ResolvedBaseline],
 ) -> (Vec<ScoredEstimate>, Vec<Expr>) {
     let arena = &plant.arena;
-    let of_rivals = rivals.iter().flat_map(|rival| {
-        let estimates = rival
+    let of_baselines = baselines.iter().flat_map(|baseline| {
+        let estimates = baseline
             .estimates
             .iter()
-            .map(|(state, _)| (state.clone(), arena.of_symbol(baseline_estimate(arena, &rival.name, state))));
-        estimates.map(|estimate| (Some(rival.name.clone()), estimate))
+            .map(|(state, _)| (state.clone(), arena.of_symbol(baseline_estimate(arena, &baseline.name, state))));
+        estimates.map(|estimate| (Some(baseline.name.clone()), estimate))
     });
     let own = hats.iter().cloned().map(|estimate| (None, estimate));
-    let (baselines, estimates): (Vec<_>, Estimates) = own.chain(of_rivals).unzip();
+    let (names, estimates): (Vec<_>, Estimates) = own.chain(of_baselines).unzip();
     let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
         let symbol = arena.symbol(state);
         let number = |periods: &BTreeMap<Symbol, Expr>| {
@@ -442,11 +452,11 @@ pub(crate) fn scored(
             step: number(&periods.steps),
         })
     };
-    let scored = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
+    let scored = names.into_iter().zip(&estimates).filter_map(judge).collect();
     (scored, errors(plant, periods, &estimates))
 }
 
-fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[ResolvedBaseline]) -> Vec<String> {
+fn columns(plant: &Plant, recovered: &[Symbol], baselines: &[ResolvedBaseline]) -> Vec<String> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|state| state.symbol);
     let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
@@ -455,8 +465,8 @@ fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[ResolvedBaseline]) -> 
     for state in recovered.iter().map(|state| arena.name(*state)) {
         columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
     }
-    for rival in rivals {
-        columns.extend(rival.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", rival.name)));
+    for baseline in baselines {
+        columns.extend(baseline.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", baseline.name)));
     }
     columns
 }

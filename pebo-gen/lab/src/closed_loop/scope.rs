@@ -11,7 +11,7 @@ use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::layout::{baseline_state, shown, time};
+use super::layout::{baseline_state, last_sample, time};
 use crate::observe::request::Request;
 
 /// Estimates by the state's name.
@@ -76,7 +76,7 @@ impl<'a> Names<'a> {
     pub(crate) fn measured(&self, output: Symbol) -> Expr {
         let arena = &self.plant.arena;
         if self.simulation.is_imperfect() {
-            arena.of_symbol(shown(arena, &arena.name(output)))
+            arena.of_symbol(last_sample(arena, &arena.name(output)))
         } else {
             arena.of_symbol(output)
         }

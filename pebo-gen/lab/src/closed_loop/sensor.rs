@@ -107,15 +107,15 @@ pub(crate) struct SensorState<'a> {
 impl SensorState<'_> {
     /// Takes the outputs at the instant `t` of a sample. Writes what the sensors show if it arrives, and says whether it
     /// does; perfect ones show nothing.
-    pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], shown: &mut [f64]) -> bool {
+    pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], samples: &mut [f64]) -> bool {
         let Self { sensors, seed, slack, past } = self;
         // The first sample starts the clock.
         let arrives = sample == 0 || sensors.dropped == 0.0 || even(*seed, DROPPED, sample) > sensors.dropped;
-        let values = sensors.each.iter().zip(past).zip(outputs).zip(shown).zip(0_u64..);
-        for ((((sensor, past), value), shown), output) in values {
+        let values = sensors.each.iter().zip(past).zip(outputs).zip(samples).zip(0_u64..);
+        for ((((sensor, past), value), held), output) in values {
             let value = if sensor.delay > 0.0 { delayed(past, (t, *value), t - sensor.delay, *slack) } else { *value };
             if arrives && sample.is_multiple_of(sensor.every) {
-                *shown = sensor.show(value, || normal(*seed, output, sample));
+                *held = sensor.show(value, || normal(*seed, output, sample));
             }
         }
         arrives
@@ -134,7 +134,7 @@ impl Sensors {
 }
 
 impl Sensor {
-    /// What is shown of a value, with a number that is drawn if it is needed.
+    /// What is samples of a value, with a number that is drawn if it is needed.
     fn show(&self, value: f64, number: impl FnOnce() -> f64) -> f64 {
         let noise = if self.deviation > 0.0 { self.deviation * number() } else { 0.0 };
         let value = value + self.bias + noise;

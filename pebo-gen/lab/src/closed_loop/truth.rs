@@ -27,7 +27,7 @@ impl Truth {
         let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new() };
         // The plant moves in time itself, not in the samples of it that observers are told.
         let arena = &names.plant.arena;
-        truth.numbers.extend(names.plant.time.map(|told| (told, arena.of_symbol(time(arena)))));
+        truth.numbers.extend(names.plant.time.map(|input| (input, arena.of_symbol(time(arena)))));
         truth.courses(names, problems);
         truth.values(names, problems);
         for entry in &names.simulation.initial {

@@ -6,6 +6,7 @@
 
 pub(crate) mod curve;
 pub(crate) mod label;
+pub(crate) mod panel;
 pub(crate) mod unit;
 
 mod axis;
@@ -14,22 +15,13 @@ mod page;
 mod plot;
 mod svg;
 
-use crate::closed_loop::panel::Panel;
-use crate::closed_loop::scenario::Scenario;
-use crate::closed_loop::trace::Trace;
 use axis::Axis;
 use label::Label;
-pub(super) use page::Band;
+pub(crate) use page::Band;
 use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
+use panel::Panel;
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
-
-/// Draws the panels of a scenario with the curves of its run.
-pub fn draw(trace: &Trace, scenario: &Scenario) -> String {
-    let duration = scenario.timing.at(scenario.timing.samples);
-    let title = (scenario.title.as_str(), title(scenario));
-    Sheet { title, time: ([0.0, duration], Label::name("t")), panels: &scenario.panels, curves: &trace.curves }.draw()
-}
 
 /// Panels with their curves over a common time.
 pub(super) struct Sheet<'a> {
@@ -74,14 +66,6 @@ impl Sheet<'_> {
         }
         plot::time_axis(&mut drawing, &time, top, name, unit);
         drawing.finish((page, top + BOTTOM), title)
-    }
-}
-
-fn title(scenario: &Scenario) -> Label {
-    let title = Label::text(&scenario.title);
-    match &scenario.feedback {
-        Some(feedback) => title.remark(&format!("feedback: {feedback}")),
-        None => title,
     }
 }
 

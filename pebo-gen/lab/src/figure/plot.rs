@@ -4,8 +4,8 @@ use super::axis::Axis;
 use super::label::Label;
 use super::line::thinned;
 use super::page::{Band, LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
+use super::panel::Panel;
 use super::svg::{Anchor, Drawing};
-use crate::closed_loop::panel::Panel;
 use pebo_design::model::Scale;
 
 /// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), each with dashes

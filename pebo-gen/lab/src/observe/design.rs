@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use pebo_cas::{Expr, Symbol};
+use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{Derivation, LeftInverse, RegressionKind};
-use pebo_design::program::Program;
+use pebo_design::program::{Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::certainty::Wanted;
 use super::request::Request;
 use super::setup::Settings;
 use super::sizes::LARGEST;
-use crate::closed_loop::layout::program;
 use crate::score::SETTLED;
 
 /// An observer, ready to be interpreted.
@@ -167,4 +166,12 @@ fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) 
         found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
     }
     found
+}
+
+/// Lowers formulas to a program; a symbol without a value is a diagnostic at `span`.
+pub(crate) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
+    lower(arena, inputs, outputs).map_err(|undeclared| {
+        let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
+        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
+    })
 }

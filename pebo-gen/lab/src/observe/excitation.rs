@@ -70,8 +70,8 @@ impl<const N: usize> Gramian<N> {
         let kept = if self.forgetting > 0.0 { (-self.forgetting * dt).exp() } else { 1.0 };
         for i in 0..self.unknowns {
             for j in 0..=i {
-                let seen = regressor.column(i).dot(&regressor.column(j)) * dt;
-                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + seen;
+                let product = regressor.column(i).dot(&regressor.column(j)) * dt;
+                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + product;
                 self.gramian[(j, i)] = self.gramian[(i, j)];
             }
         }
@@ -92,14 +92,14 @@ impl<const N: usize> Gramian<N> {
     }
 
     /// What the data say of each component.
-    pub(crate) fn said(&self) -> ComponentInformation {
+    pub(crate) fn component_information(&self) -> ComponentInformation {
         let data: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)]).collect();
         let shares = (0..self.unknowns).map(|i| if data[i] > 0.0 { self.share(i, &data) } else { 0.0 }).collect();
         // What nobody forgets, nobody loses.
         ComponentInformation { data: if self.is_measure { data } else { Vec::new() }, shares }
     }
 
-    /// What is said of a component that the others do not explain, 0 to 1.
+    /// What is information of a component that the others do not explain, 0 to 1.
     ///
     /// Method: Gauss elimination of the correlations, the largest pivot first and the component last, whose pivot it is.
     fn share(&self, component: usize, data: &[f64]) -> f64 {
@@ -162,20 +162,20 @@ impl ExcitationMonitor {
     ///
     /// Lost is scored by what the data say of a component, and not by its share alone: where the extension starts again
     /// from the estimate, old data of a state that dies out become ever more certain, and all others small beside them.
-    pub(crate) fn look(&mut self, t: f64, said: &ComponentInformation) {
+    pub(crate) fn look(&mut self, t: f64, information: &ComponentInformation) {
         let least = |values: &mut dyn Iterator<Item = f64>| {
             values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
-        let (weakest, share) = least(&mut said.shares.iter().copied());
-        let known = said.data.iter().zip(&said.shares).map(|(data, share)| data * share.max(ROUNDING));
+        let (weakest, share) = least(&mut information.shares.iter().copied());
+        let known = information.data.iter().zip(&information.shares).map(|(data, share)| data * share.max(ROUNDING));
         let (faintest, certainty) = least(&mut known.zip(&self.enough).map(|(known, enough)| known * enough));
-        let is_lost = !said.data.is_empty() && certainty < 0.5;
+        let is_lost = !information.data.is_empty() && certainty < 0.5;
         match self.state {
             State::NotYet => {
                 self.weakest = weakest;
                 if share >= ENOUGH {
                     self.state = State::Converged(t);
-                    self.enough = said.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
+                    self.enough = information.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
                 }
             }
             State::Converged(_) if is_lost && !self.enough.is_empty() => {
@@ -201,7 +201,7 @@ impl ExcitationMonitor {
 mod tests {
     use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-    use super::{Excitation, Gramian, ExcitationMonitor};
+    use super::{Excitation, ExcitationMonitor, Gramian};
 
     /// One equation `[cos a, sin a, 0]` of two unknowns, padded.
     fn row(angle: f64) -> SMatrix<f64, 3, 3> {
@@ -225,8 +225,8 @@ mod tests {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let expected =
             1.0 - dot(columns[0], columns[1]).powi(2) / dot(columns[0], columns[0]) / dot(columns[1], columns[1]);
-        let said = information.said();
-        assert!(said.shares.iter().all(|share| (share - expected).abs() < 1e-12), "{said:?} {expected}");
+        let information = information.component_information();
+        assert!(information.shares.iter().all(|share| (share - expected).abs() < 1e-12), "{information:?} {expected}");
     }
 
     #[test]
@@ -238,7 +238,7 @@ mod tests {
             // The regressor turns between 10 and 20 s, and stands at 0.5 before and after.
             let angle = 0.5 + (t - 10.0).clamp(0.0, 10.0);
             information.add(&row(angle), 0.1);
-            watch.look(t, &information.said());
+            watch.look(t, &information.component_information());
             states.push(watch.excitation(&names()));
         }
         assert!(matches!(&states[99], Excitation::NotYet { .. }), "{:?}", states[99]);
@@ -256,7 +256,7 @@ mod tests {
     fn a_component_without_data_is_named() {
         let (mut information, mut watch) = (Gramian::<3>::new(2, 0.0), ExcitationMonitor::default());
         information.add(&row(0.0), 1.0);
-        watch.look(0.0, &information.said());
+        watch.look(0.0, &information.component_information());
         assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });
     }
 }

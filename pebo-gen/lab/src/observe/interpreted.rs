@@ -21,10 +21,10 @@ use pebo_design::program::{Interpreter, Program};
 use super::design::Design;
 use super::excitation::ComponentInformation;
 use super::monitored::MonitoredEstimator;
+use super::operator::PaddedOperator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
 use super::uncertainty::{Interval, NoiseModel, Uncertainty};
-use super::window::PaddedOperator;
 
 /// An observer of some size.
 pub(crate) trait DynObserver: fmt::Debug {
@@ -45,7 +45,7 @@ pub(crate) trait DynObserver: fmt::Debug {
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
 
     /// What the data so far say of each component of the unknown.
-    fn said(&self) -> ComponentInformation;
+    fn component_information(&self) -> ComponentInformation;
 
     /// The coordinates z that a value of theta gives with the extension as it is.
     #[cfg(test)]
@@ -294,9 +294,9 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         if self.output.is_none() {
             return *extension;
         }
-        let seen = self.regression(extension, y, &SVector::zeros()).known;
+        let known = self.regression(extension, y, &SVector::zeros()).known;
         let mut begun = *extension;
-        begun.rebase(&-seen);
+        begun.rebase(&-known);
         begun
     }
 
@@ -312,10 +312,22 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
 }
 
 /// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
-impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> pebo_runtime::Rebase<N, N, N, N, N>
+    for Derived<X, K, N>
+{
+}
 
-type Inner<X, K, const N: usize> =
-    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, MonitoredEstimator<N>, N>, N, N, N, N, N, N, PaddedOperator<N>>;
+type Inner<X, K, const N: usize> = Observer<
+    Within<Derived<X, K, N>, f64, N>,
+    Bounded<f64, MonitoredEstimator<N>, N>,
+    N,
+    N,
+    N,
+    N,
+    N,
+    N,
+    PaddedOperator<N>,
+>;
 
 /// The runtime's observer at size N.
 struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize> {
@@ -342,7 +354,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let estimator =
+            Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
         let passage = PaddedOperator::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
@@ -363,7 +376,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.equations),
             is_certain: matches!(settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_))),
-            uncertainty: told(design, whole).map(|told| Uncertainty::new(&told)),
+            uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
         })
     }
 
@@ -397,8 +410,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
     }
 }
 
-/// What is told of the noise of a design, where that of a sample is elsewhere than in its row too.
-fn told(design: &Design, whole: bool) -> Option<NoiseModel> {
+/// What is noise_model of the noise of a design, where that of a sample is elsewhere than in its row too.
+fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
     let settings = &design.settings;
     let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
         (&settings.prediction, &settings.operator, &settings.estimator)
@@ -434,7 +447,7 @@ fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fa
 
 impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> fmt::Debug for PaddedObserver<X, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("PaddedObserver").field(self.observer.model()).finish()
+        f.debug_tuple("Padded").field(self.observer.model()).finish()
     }
 }
 
@@ -442,8 +455,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         if let Some(limits) = &self.limits {
             // What is missing is in no range: it is left out, or refused for that.
-            let seen = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
-            match limits.check(&pad(&seen), &pad(u), dt) {
+            let present = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
+            match limits.check(&pad(&present), &pad(u), dt) {
                 Err(Fault::Gap) => {
                     self.observer.restart(self.chi_0, &SVector::zeros())?;
                     self.restarts += 1;
@@ -501,8 +514,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         self.restarts
     }
 
-    fn said(&self) -> ComponentInformation {
-        self.observer.estimator().estimator().said()
+    fn component_information(&self) -> ComponentInformation {
+        self.observer.estimator().estimator().component_information()
     }
 
     #[cfg(test)]

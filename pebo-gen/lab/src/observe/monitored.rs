@@ -4,7 +4,7 @@ use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
 
 use super::estimator::PaddedEstimator;
-use super::excitation::{Gramian, ComponentInformation};
+use super::excitation::{ComponentInformation, Gramian};
 use super::setup::{self, Covariance, Extension};
 
 /// An estimator of a padded model, with what its data say.
@@ -29,8 +29,8 @@ impl<const N: usize> MonitoredEstimator<N> {
     }
 
     /// What the data say of each component of the unknown.
-    pub(crate) fn said(&self) -> ComponentInformation {
-        self.information.said()
+    pub(crate) fn component_information(&self) -> ComponentInformation {
+        self.information.component_information()
     }
 }
 

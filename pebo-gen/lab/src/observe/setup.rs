@@ -2,7 +2,7 @@
 
 use pebo_runtime::{Drift, Hold};
 
-use crate::settings::{KnownNumbers, Prediction, DerivedSettings, start};
+use crate::settings::{DerivedSettings, KnownNumbers, Prediction, start};
 use pebo_cas::Rational;
 use pebo_design::analysis::{Derivation, LeftInverse, Regression};
 use pebo_design::model::{self, Decimal, Observer};
@@ -146,7 +146,7 @@ impl Settings {
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let before = problems.has_errors();
-        let Some(tuned) = DerivedSettings::of(request.model, request.plant, derivation, period, problems) else {
+        let Some(derived) = DerivedSettings::of(request.model, request.plant, derivation, period, problems) else {
             if before || !problems.has_errors() {
                 let message = format!("{} needs the observer's numbers", request.who);
                 problems.push(Diagnostic::error(Code::SimulationIncomplete, request.section, message).help(
@@ -155,7 +155,7 @@ impl Settings {
             }
             return None;
         };
-        let settings = tuned.settings;
+        let settings = derived.settings;
         let all = |values: &[Rational]| values.iter().map(Rational::to_f64).collect::<Vec<f64>>();
         let estimator = match &settings.estimator {
             settings::Estimator::LeastSquares(settings::Covariance { start, forgetting, process_noise }) => {
@@ -165,7 +165,7 @@ impl Settings {
                     process_noise: process_noise.as_deref().map(all),
                 })
             }
-            // KnownNumbers numbers come to least squares.
+            // Known numbers come to least squares.
             _ => return None,
         };
         let chi_0 = all(&settings.chi_0);
@@ -188,8 +188,8 @@ impl Settings {
             chi_0,
             gate: settings.gate.as_ref().map(Rational::to_f64),
             limits: Limits::of(request.model, |number| Some(number.to_f64())),
-            known: tuned.known,
-            prediction: Some(tuned.prediction),
+            known: derived.known,
+            prediction: Some(derived.prediction),
         })
     }
 }

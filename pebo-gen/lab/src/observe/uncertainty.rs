@@ -5,7 +5,7 @@
 //! e+ = (1 - K H) e' + K E n'   least squares take the sample
 //! ```
 //!
-//! In: each step of the observer, with what it is told of its sensors. Out: the covariance of `(e, n)`, the error of z and the
+//! In: each step of the observer, and the noise model. Out: the covariance of `(e, n)`, the error of z and the
 //! noise of the last sample, and from it standard errors of the estimates and what an innovation should be.
 //!
 //! The runtime's least squares take the noise of a sample and that of the cascade for independent, and weigh both by their
@@ -19,7 +19,7 @@ use pebo_runtime::{Extension, Fault, Flow, Fundamental, Model};
 
 use super::sizes::{pad, padded};
 
-/// What is told of the noise that an observer has to do with, each with a value for every output or coordinate.
+/// The noise that an observer meets, with a value for every output or coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NoiseModel {
     /// The standard deviations of the outputs' samples.
@@ -79,14 +79,14 @@ struct Propagation<const N: usize> {
 }
 
 impl<const N: usize> Uncertainty<N> {
-    pub(crate) fn new(told: &NoiseModel) -> Self {
+    pub(crate) fn new(noise: &NoiseModel) -> Self {
         Self {
-            sensors: pad(&told.sensors),
-            weights: padded(&told.weights, 1.0),
-            start: pad(&told.start),
-            drift: pad(&told.drift),
-            rows: told.rows,
-            measured: told.measured.clone(),
+            sensors: pad(&noise.sensors),
+            weights: padded(&noise.weights, 1.0),
+            start: pad(&noise.start),
+            drift: pad(&noise.drift),
+            rows: noise.rows,
+            measured: noise.measured.clone(),
             joint: None,
         }
     }
@@ -106,8 +106,8 @@ impl<const N: usize> Uncertainty<N> {
         if self.rows > 0 {
             let of_sample = self.of_sample(model, y, u, &SVector::zeros());
             both = of_sample * noise;
-            let (seen, size) = (both * of_sample.transpose(), (self.rows, self.rows));
-            errors.view_mut((0, 0), size).copy_from(&seen.view((0, 0), size));
+            let (known, size) = (both * of_sample.transpose(), (self.rows, self.rows));
+            errors.view_mut((0, 0), size).copy_from(&known.view((0, 0), size));
         }
         self.joint = Some(JointCovariance { errors, both, noise });
     }
@@ -139,10 +139,10 @@ impl<const N: usize> Uncertainty<N> {
             weights[row] = 0.0;
         }
         let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);
-        let told = (one - gain * rows) * (one + of_noise * expected);
+        let kept = (one - gain * rows) * (one + of_noise * expected);
         // Of error, noise of the last sample, and noise of this one: what becomes of them in the error and in the noise.
         let fresh = of_noise * present;
-        let to_errors = [told * of_errors, told * of_noise, told * fresh + gain * of_sample * present];
+        let to_errors = [kept * of_errors, kept * of_noise, kept * fresh + gain * of_sample * present];
         let to_noise = [expected * of_errors, expected * of_noise, expected * fresh + present];
         let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
@@ -153,8 +153,8 @@ impl<const N: usize> Uncertainty<N> {
                 + by_sample * sensors * right[2].transpose()
         };
         self.joint = Some(JointCovariance {
-            errors: between(&to_errors, &to_errors) + told * drift * told.transpose(),
-            both: between(&to_errors, &to_noise) + told * drift * expected.transpose(),
+            errors: between(&to_errors, &to_errors) + kept * drift * kept.transpose(),
+            both: between(&to_errors, &to_noise) + kept * drift * expected.transpose(),
             noise: between(&to_noise, &to_noise) + expected * drift * expected.transpose(),
         });
         Ok(())

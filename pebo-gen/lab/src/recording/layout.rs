@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::closed_loop::layout::{estimate, program};
+use crate::closed_loop::layout::estimate;
+use crate::observe::design::program;
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::plant::Plant;
 use pebo_design::program::Program;
@@ -15,8 +16,8 @@ pub(super) struct Layout {
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
-    /// The time as the observer is told it, which then is the last of the inputs.
-    pub(super) told: Option<usize>,
+    /// The time as the observer is measured_time it, which then is the last of the inputs.
+    pub(super) measured_time: Option<usize>,
     pub(super) hat: Range<usize>,
     /// The states that the observer recovers, with the symbols of their estimates.
     pub(super) estimated: Vec<(Symbol, Symbol)>,
@@ -36,9 +37,9 @@ impl Layout {
         let x = add(measured.iter().map(|place| plant.x[*place].symbol).collect());
         let y = add(plant.y.iter().map(|output| output.symbol).collect());
         let u = add(plant.u.clone());
-        let told = plant.time.map(|_| u.end - 1);
+        let measured_time = plant.time.map(|_| u.end - 1);
         let hat = add(estimated.iter().map(|(_, hat)| *hat).collect());
-        Self { symbols, x, y, u, told, hat, estimated }
+        Self { symbols, x, y, u, measured_time, hat, estimated }
     }
 
     /// The number of values.

@@ -1,9 +1,9 @@
 //! The parts of the figure of a replay: a panel for each estimate, beside the state where that was measured; errors;
 //! residuals where no state was; outputs; inputs. On a linear axis all signals have one unit.
 
-use crate::closed_loop::panel::Panel;
 use crate::figure::curve::GrowingCurve;
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use pebo_cas::Symbol;
 use pebo_design::model::Scale;
 use pebo_design::plant::Plant;
@@ -47,7 +47,7 @@ impl Panels {
         }
         let numbered = errors.iter().enumerate();
         let curves = numbered.map(|(place, state)| (*state, Label::error(&name(*state)), CurveSource::Error(place)));
-        panels.add(plant, "DynObserver errors", Scale::Log, curves.collect());
+        panels.add(plant, "Estimation errors", Scale::Log, curves.collect());
         if errors.is_empty() {
             let numbered = residuals.outputs.iter().enumerate();
             let curves = numbered.map(|(place, (output, _))| {

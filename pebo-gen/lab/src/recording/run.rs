@@ -1,7 +1,7 @@
 //! The observer over the rows of a log.
 //!
 //! ```text
-//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, told of u_0 -> ..
+//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, measured_time of u_0 -> ..
 //! ```
 //!
 //! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then on.
@@ -15,9 +15,9 @@ use crate::closed_loop::trace::write_number;
 use crate::figure::Sheet;
 use crate::figure::label::Label;
 use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::ObserverDriver;
 use crate::score::Scorer;
 use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary};
@@ -25,7 +25,7 @@ use pebo_design::program::Interpreter;
 
 use super::clock::{Clock, Instant};
 use super::failure::Failure;
-use super::fault::{RowFaults, RowFault};
+use super::fault::{RowFault, RowFaults};
 use super::log::{Blank, Log, Next};
 use super::panels::Curves;
 use super::replayed::{OutputResidual, Replayed};
@@ -42,7 +42,7 @@ const LOOKS: u64 = 1024;
 const FAR: f64 = 20.0;
 
 impl Replay {
-    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is told of rows and bytes
+    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is measured_time of rows and bytes
     /// now and then, and may end the run there.
     pub fn run(
         &self,
@@ -81,10 +81,10 @@ struct ReplayState<'a, 'w> {
     signals: Interpreter,
     /// The cells of the row, and what they say.
     cells: Vec<f64>,
-    said: Vec<f64>,
+    values: Vec<f64>,
     /// All values, see [`Layout`](super::layout::Layout).
     table: Vec<f64>,
-    stepping: ObserverDriver,
+    driver: ObserverDriver,
     residuals: residual::ResidualState<'a>,
     errors: (Interpreter, Vec<f64>),
     faults: RowFaults,
@@ -113,15 +113,15 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             clock: Clock::new(signals.period),
             signals: Interpreter::new(&signals.program),
             cells: vec![0.0; signals.wanted.len()],
-            said: vec![0.0; signals.program.outputs.len()],
+            values: vec![0.0; signals.program.outputs.len()],
             table: vec![0.0; layout.len()],
-            stepping: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
+            driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
             faults: RowFaults::default(),
             curves: replay.panels.start(),
             scores: replay.scored.iter().map(|scored| Scorer::new(scored.period)).collect(),
-            // Of these none is small in itself: what is told is the last tenth.
+            // Of these none is small in itself: what is measured_time is the last tenth.
             misfits: residuals.outputs.iter().map(|_| Scorer::new(Some(0.0))).collect(),
             watch: ExcitationMonitor::default(),
             expected: ExpectedErrors::default(),
@@ -137,11 +137,11 @@ impl<'a, 'w> ReplayState<'a, 'w> {
     }
 
     fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
-        let Self { faults, replay, cells, stepping, .. } = self;
+        let Self { faults, replay, cells, driver, .. } = self;
         let wanted = &replay.signals.wanted;
         // An output that is not there is no fault of an observer that leaves its row out.
         let is_part = |column: usize, blank| {
-            matches!(blank, Blank::Empty) && stepping.observer.admits_partial() && replay.signals.of_outputs[column]
+            matches!(blank, Blank::Empty) && driver.observer.admits_partial() && replay.signals.of_outputs[column]
         };
         let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
         let mut count = |column, blank, line| {
@@ -155,12 +155,12 @@ impl<'a, 'w> ReplayState<'a, 'w> {
     /// Takes the row that was read.
     fn row(&mut self, line: u64) -> Result<(), Failure> {
         self.rows += 1;
-        self.signals.run(&self.cells, &mut self.said);
-        let (told, signals) = match self.replay.signals.period {
-            Some(_) => (f64::NAN, self.said.as_slice()),
-            None => (self.said[0], &self.said[1..]),
+        self.signals.run(&self.cells, &mut self.values);
+        let (measured_time, signals) = match self.replay.signals.period {
+            Some(_) => (f64::NAN, self.values.as_slice()),
+            None => (self.values[0], &self.values[1..]),
         };
-        let (t, dt) = match self.clock.row(told) {
+        let (t, dt) = match self.clock.row(measured_time) {
             Instant::First(t) => (t, 1.0),
             Instant::Later { t, dt, gap } => {
                 if gap {
@@ -208,15 +208,15 @@ impl<'a, 'w> ReplayState<'a, 'w> {
     /// took them.
     fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
         // It begins where the inputs of the interval to come are known.
-        if !self.stepping.has_started() && inputs.iter().any(|input| !input.is_finite()) {
+        if !self.driver.has_started() && inputs.iter().any(|input| !input.is_finite()) {
             return false;
         }
         let layout = &self.replay.layout;
         // An input holds for an interval: of one that moves on, the mean does. Residuals are of the instant.
-        layout.told.into_iter().for_each(|told| self.table[told] = t - dt / 2.0);
+        layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t - dt / 2.0);
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
-        let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
-        layout.told.into_iter().for_each(|told| self.table[told] = t);
+        let taken = self.driver.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
+        layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t);
         if taken.is_err() {
             return false;
         }
@@ -251,8 +251,8 @@ impl<'a, 'w> ReplayState<'a, 'w> {
 
     /// Looks at what the data determine.
     fn look(&mut self) {
-        self.watch.look(self.last, &self.stepping.observer.said());
-        let predicted = self.stepping.standard_errors();
+        self.watch.look(self.last, &self.driver.observer.component_information());
+        let predicted = self.driver.standard_errors();
         self.certain.look(self.last, predicted.as_deref());
         self.expected.add(self.last, predicted);
     }
@@ -293,7 +293,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         let Replay { names, panels, residuals, title, design, .. } = self.replay;
         let faults = self.faults.worded([&names.columns, &names.u]);
         let Some(first) = self.first.filter(|_| self.samples > 0) else {
-            let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
+            let refused = self.driver.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
             return Err(Failure::Silent { rows: self.rows, faults, refused });
         };
         let rated = |((scored, score), place): ((&ScoredEstimate, &Scorer), &usize)| {
@@ -326,11 +326,11 @@ impl<'a, 'w> ReplayState<'a, 'w> {
                 samples: self.rows - 1,
                 estimates: self.replay.scored.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
                 excitation: self.watch.excitation(&design.unknown_names),
-                faults: self.stepping.faults().clone(),
+                faults: self.driver.faults().clone(),
                 dropped: 0,
-                parted: self.stepping.parted(),
-                restarts: self.stepping.restarts(),
-                surprise: self.stepping.surprise(),
+                parted: self.driver.parted(),
+                restarts: self.driver.restarts(),
+                surprise: self.driver.surprise(),
                 certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),
             },

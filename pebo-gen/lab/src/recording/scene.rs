@@ -3,7 +3,7 @@
 //! In: an accepted derivation with what was written, and the columns. Out: the replay, or every mistake in the sections
 //! `observer` and `recording`. After this, only what is in the rows can go wrong.
 
-use crate::closed_loop::scenario::{ScoredEstimate, Periods, scored};
+use crate::closed_loop::scenario::{Periods, ScoredEstimate, scored};
 use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
 use crate::observe::request::Request;

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::closed_loop::layout::program;
+use crate::observe::design::program;
 use crate::observe::request::Request;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};

@@ -50,9 +50,9 @@ pub(super) fn derive(
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
     let formulas = Formulas::of(plant, derivation, kind == ObserverKind::Output || frame.gate.is_some())?;
-    let said = Point::of(model, plant);
+    let known = Point::of(model, plant);
     let asked = model.observer.known();
-    if let Some(lacking) = said.lacks(&formulas.needed(plant)) {
+    if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
         // Nobody asked for numbers: then there is no observer either.
         if let Some((key, span)) = asked {
             problems.push(no_point(plant, (key, span), lacking));
@@ -61,10 +61,10 @@ pub(super) fn derive(
     }
     let start = match frame.chi_0.clone() {
         Some(written) => written,
-        None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
+        None => beginning(&known, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
-    let point = completed(&said, plant, &formulas, &start)?;
-    let deviations = Deviations::of(model, plant, &said, period)?;
+    let point = completed(&known, plant, &formulas, &start)?;
+    let deviations = Deviations::of(model, plant, &known, period)?;
 
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, noise } = coordinates;
@@ -279,11 +279,11 @@ fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
 }
 
 /// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
-fn completed<'a>(said: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
+fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
     let signals = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).chain(plant.u.clone());
     let all: Vec<Symbol> = signals.chain(plant.w.clone()).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
-    let missing: Vec<Symbol> = all.into_iter().filter(|symbol| said.of_symbol(*symbol).is_none()).collect();
-    let point = said.with(&missing, &vec![0.0; missing.len()]);
+    let missing: Vec<Symbol> = all.into_iter().filter(|symbol| known.of_symbol(*symbol).is_none()).collect();
+    let point = known.with(&missing, &vec![0.0; missing.len()]);
     let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
     let z = point.values(&phi)?;
     let chi_0: Vec<f64> = chi_0.iter().map(Rational::to_f64).collect();
@@ -330,8 +330,8 @@ impl Formulas {
         let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
         let flow: Vec<Expr> = match &cascade.lambda {
             Some(lambda) => {
-                let moved = cascade.h.iter().zip(lambda);
-                moved.map(|(h, row)| arena.add(*h, times(row, &plant.z))).collect()
+                let rates = cascade.h.iter().zip(lambda);
+                rates.map(|(h, row)| arena.add(*h, times(row, &plant.z))).collect()
             }
             None => cascade.h.clone(),
         };

@@ -78,8 +78,8 @@ impl DerivedSettings {
                 prediction: Prediction::None("gains do not say what sensors err by"),
             });
         }
-        let mut tuned = derive::derive(model, plant, derivation, period, problems)?;
-        tuned.settings.limits = limits;
-        Some(tuned)
+        let mut derived = derive::derive(model, plant, derivation, period, problems)?;
+        derived.settings.limits = limits;
+        Some(derived)
     }
 }

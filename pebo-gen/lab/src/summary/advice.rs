@@ -110,9 +110,9 @@ pub(crate) fn advise(
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            (Origin::Simulated(departures @ [first, ..], moved), None) => {
+            (Origin::Simulated(departures @ [first, ..], state), None) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
-                let help = match moved {
+                let help = match state {
                     Some(state) if *first == "plant" => follow(state, (estimator, summary.known.is_some())),
                     _ => mend(first, summary.known.is_some()).to_owned(),
                 };

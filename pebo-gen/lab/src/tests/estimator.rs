@@ -9,9 +9,9 @@ use pebo_runtime::{
 use super::{CUK_CASE_2, resolve, run};
 use crate::Overrides;
 use crate::observe::estimator::PaddedEstimator;
+use crate::observe::operator::Window;
 use crate::observe::setup::{self, Covariance, Extension};
 use crate::observe::sizes::{LARGEST, MOST_MIXED, padded};
-use crate::observe::window::Window;
 use pebo_design::source::Code;
 
 /// Case II of the converter with this section `observer`.

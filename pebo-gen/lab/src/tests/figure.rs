@@ -1,5 +1,5 @@
+use crate::closed_loop::trace::draw;
 use crate::figure::curve::Curve;
-use crate::figure::draw;
 use crate::{Overrides, Scenario};
 
 use super::{CUK_CASE_2, SPRING, resolve, with};
@@ -50,7 +50,7 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
     let text = with(SPRING, "model: spring", "model: spring\ntitle: \"a < b & \\u0007 c\"");
     let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
     assert_well_formed(&svg);
-    assert!(svg.contains("DynObserver errors") && svg.contains("Outputs") && !svg.contains("Inputs"));
+    assert!(svg.contains("Estimation errors") && svg.contains("Outputs") && !svg.contains("Inputs"));
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn units_stand_with_the_axis_or_beside_the_curves() {
     let text = super::CUK.replace(", unit: A", "").replace(", unit: V", "");
     let svg = figure(&resolve(&text, &Overrides { duration: Some(1e-3), ..Overrides::default() }).unwrap());
     let said: String = svg.split('<').filter_map(|part| Some(part.split_once('>')?.1)).collect();
-    assert!(said.contains("DynObserver errors in A") && !said.contains("reference in"), "{said}");
+    assert!(said.contains("Estimation errors in A") && !said.contains("reference in"), "{said}");
 }
 
 #[test]

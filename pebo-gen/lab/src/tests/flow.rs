@@ -1,7 +1,7 @@
 use crate::Overrides;
 use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
-use crate::closed_loop::ode::equation::Stuck;
+use crate::closed_loop::ode::equation::Standstill;
 use crate::closed_loop::signal::Signal;
 use pebo_cas::{Arena, Expr};
 use pebo_design::model::Model;
@@ -37,7 +37,7 @@ pub(super) fn course(arena: &Arena, formula: &str) -> Signal {
 }
 
 /// The state after each of `steps` steps of 0.1 s, where the table is time, one state and the signal `s`.
-fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Stuck> {
+fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Standstill> {
     let arena = Arena::new();
     let (state, input) = (arena.variable("a"), arena.variable("s"));
     let symbols = [time(&arena), arena.symbol("a"), arena.symbol("s")];

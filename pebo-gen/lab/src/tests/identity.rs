@@ -171,8 +171,7 @@ impl Loop {
             machine.control().unwrap();
             machine.advance(sample).unwrap();
             z_of.run(&machine.table[..symbols.len()], &mut z);
-            for ((z, other), (off, scale)) in
-                z.iter().zip(machine.stepping.observer.coordinates(&theta)).zip(&mut worst)
+            for ((z, other), (off, scale)) in z.iter().zip(machine.driver.observer.coordinates(&theta)).zip(&mut worst)
             {
                 *off = off.max((z - other).abs());
                 *scale = scale.max(z.abs()).max(1e-3);

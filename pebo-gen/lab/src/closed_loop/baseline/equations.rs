@@ -19,16 +19,20 @@ pub(super) struct ResolvedEquations {
 }
 
 /// Resolves a baseline of this name.
-pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), problems: &mut Diagnostics) -> ResolvedEquations {
+pub(super) fn resolve(
+    names: &Names,
+    (name, baseline): (&str, &Equations),
+    problems: &mut Diagnostics,
+) -> ResolvedEquations {
     let arena = &names.plant.arena;
-    let seen = View { sight: Sight::Inputs, own: Some((name, baseline)), ..View::default() };
+    let view = View { sight: Sight::Inputs, own: Some((name, baseline)), ..View::default() };
 
-    let scope = names.scope(&seen);
+    let scope = names.scope(&view);
     let estimates: Estimates = (baseline.estimate.iter())
         .filter_map(|e| Some((e.name.value.clone(), problems.keep(lower(arena, &scope, &e.value))?)))
         .collect();
 
-    let scope = names.scope(&View { hats: estimates.clone(), ..seen });
+    let scope = names.scope(&View { hats: estimates.clone(), ..view });
     let rates = (baseline.state.iter()).filter_map(|e| problems.keep(lower(arena, &scope, &e.value))).collect();
 
     let scope = names.scope(&View { sight: Sight::Outputs, ..View::default() });

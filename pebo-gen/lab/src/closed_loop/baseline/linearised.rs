@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Extension as _, Fault, Flow, Fundamental};
 
-use crate::closed_loop::layout::program;
 use crate::closed_loop::scope::Names;
 use crate::closed_loop::truth::Truth;
+use crate::observe::design::program;
 use crate::observe::sizes::LARGEST;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Expr, Symbol};

@@ -47,7 +47,10 @@ impl ResolvedBaseline {
             Baseline::Kalman(_) | Baseline::Luenberger(_) => {
                 let estimates = baseline_estimates(names.plant, entry).into_iter();
                 let estimates = estimates.map(|(state, symbol)| (state, names.plant.arena.of_symbol(symbol))).collect();
-                (ResolvedEquations { estimates, ..ResolvedEquations::default() }, Some(NamedBaseline::resolve(names, entry, problems)?))
+                (
+                    ResolvedEquations { estimates, ..ResolvedEquations::default() },
+                    Some(NamedBaseline::resolve(names, entry, problems)?),
+                )
             }
         };
         Some(Self { name: name.to_owned(), rates, start, estimates, sampled })

@@ -7,9 +7,9 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-use crate::closed_loop::layout::program;
 use crate::closed_loop::scope::{Names, Sight, View};
 use crate::closed_loop::sensor;
+use crate::observe::design::program;
 use crate::observe::sizes::{LARGEST, pad};
 use pebo_cas::Expr;
 use pebo_design::model::{Baseline, Decimal, Entry, Kalman, Luenberger, Spanned};
@@ -58,9 +58,10 @@ impl NamedBaseline {
             });
         }
         // What the outputs show is what is passed.
-        let shown = names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
-        let shown = shown.collect();
-        let start: Vec<Expr> = start.into_iter().map(|formula| arena.replace(formula, &shown)).collect();
+        let measured =
+            names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
+        let measured = measured.collect();
+        let start: Vec<Expr> = start.into_iter().map(|formula| arena.replace(formula, &measured)).collect();
         let outputs: Vec<_> = names.plant.y.iter().map(|output| output.symbol).collect();
         let start = problems.keep(program(arena, &outputs, &start, entry.name.span))?;
         Some(Self { plant, start, rule })

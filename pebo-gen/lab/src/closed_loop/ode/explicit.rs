@@ -24,7 +24,7 @@ impl<const N: usize> ExplicitMethod<N> {
 
 impl<const N: usize> fmt::Debug for ExplicitMethod<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "ExplicitMethod<{N}>")
+        write!(f, "Explicit<{N}>")
     }
 }
 
@@ -41,7 +41,7 @@ impl<const N: usize> Solver for ExplicitMethod<N> {
         start[..state.len()].copy_from_slice(state);
         let method = &mut self.0;
         let origin = rates.0.borrow().origin;
-        let stuck = |method: &DormandPrinceOf<N>, steps| Standstill {
+        let standstill = |method: &DormandPrinceOf<N>, steps| Standstill {
             steps,
             at: origin + method.t(),
             state: method.y()[..state.len()].to_vec(),
@@ -58,14 +58,14 @@ impl<const N: usize> Solver for ExplicitMethod<N> {
                 break;
             }
             if steps == most || method.h().is_nan() || method.h() <= SHORTEST * length {
-                return Err(stuck(method, steps));
+                return Err(standstill(method, steps));
             }
             if method.h() > rest {
                 method.set_h(rest);
             }
             let before = method.t();
             if method.step(rates).is_err() {
-                return Err(stuck(method, steps));
+                return Err(standstill(method, steps));
             }
             steps += 1;
             // A step that was refused has moved nothing.

@@ -25,7 +25,7 @@ use switching::{SwitchPrograms, SwitchState};
 /// Steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// ExplicitMethod steps between two samples from which on the plant may be stiff.
+/// Explicit steps between two samples from which on the plant may be stiff.
 const MANY_STEPS: u64 = 1000;
 
 /// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
@@ -177,7 +177,7 @@ impl Flow {
                 return Ok(steps);
             }
             // It will not get on with more steps.
-            Err(stuck) if stuck.steps < few => return Err(stuck),
+            Err(standstill) if standstill.steps < few => return Err(standstill),
             Err(_) => {}
         }
         begun.copy_from_slice(state);

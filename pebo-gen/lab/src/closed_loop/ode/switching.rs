@@ -18,7 +18,8 @@ use pebo_cas::{Arena, Expr, Function, Node, Symbol};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Diagnostic, Span};
 
-use crate::closed_loop::layout::{Layout, program, time};
+use crate::closed_loop::layout::{Layout, time};
+use crate::observe::design::program;
 
 /// Rounds in which switches that slide together are found: each is solved for with the others as they are.
 const ROUNDS: usize = 200;
@@ -86,7 +87,12 @@ impl Switches {
 
     /// The same as programs on a table of these symbols, at whose end stand those that were put in; none where there are no
     /// switches.
-    pub(crate) fn programs(&self, arena: &Arena, table: &[Symbol], span: Span) -> Result<Option<SwitchPrograms>, Diagnostic> {
+    pub(crate) fn programs(
+        &self,
+        arena: &Arena,
+        table: &[Symbol],
+        span: Span,
+    ) -> Result<Option<SwitchPrograms>, Diagnostic> {
         if self.levels.is_empty() {
             return Ok(None);
         }
