@@ -1,15 +1,16 @@
-//! The closed loop of plant, controller and observer, run.
+//! The laboratory: settings of an observer, its closed loop with plant and controller, its runs over recordings.
 //!
 //! ```text
 //! Model, Plant, Derivation -> Scenario -> run -> Trace -> CSV, figure
 //! ```
 //!
-//! In: an accepted derivation, and the model's sections `observer` and `simulation`. Out: the course
-//! of the loop, or a diagnostic where the sections do not say enough, or the fact that the run could
-//! not go on. The observer is the runtime library's own, on a model that is interpreted. The plant, which may differ from
-//! its model (`truth`), and the baselines that have equations are one ODE between two samples; baselines by name (`baseline`)
-//! are fed the samples that the observer is. Between plant and observers are sensors (`sensor`), whose samples may be
-//! noisy, offset, rounded, late, at other instants or not there. No file is touched here and nothing printed.
+//! In: an accepted derivation, and the model's sections `observer` and `simulation`. Out: the course of the loop, or
+//! diagnostics of incomplete sections, or the reason why the run stopped early. The observer is the runtime library's
+//! own, on a model that is interpreted. The plant, which may differ from
+//! its model (`truth`), and the baselines that have equations are one ODE between two samples; baselines by name
+//! (`baseline`) are fed the samples that the observer is. Between plant and observers are sensors (`sensor`), whose
+//! samples may be noisy, offset, rounded, late, at other instants or not there. No file is touched here and nothing
+//! printed.
 //!
 //! Holds: the same scenario gives the same trace, to the last bit.
 

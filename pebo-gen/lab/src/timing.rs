@@ -1,4 +1,4 @@
-//! When the loop is sampled, and which samples are written.
+//! The instants of a run, and the samples that are written.
 
 use pebo_cas::Rational;
 use pebo_design::model::{Simulation, Spanned};
@@ -6,7 +6,7 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use crate::overrides::Overrides;
 
-/// A run of that many samples takes minutes; one of more, hours.
+/// A run with this number of samples takes minutes; one with more, hours.
 pub(super) const MOST_SAMPLES: f64 = 2e8;
 
 /// Rows of the table, unless asked otherwise.
@@ -96,12 +96,12 @@ impl Timing {
 /// A time that the file or the call sets.
 struct Setting {
     seconds: Rational,
-    /// Where; nowhere in the file if the call sets it.
+    /// The span in the file; nowhere if the call sets it.
     span: Span,
 }
 
 impl Setting {
-    /// That of the call, else that of the file.
+    /// The setting of the call, else that of the file.
     fn resolve(
         name: &str,
         written: Option<&Spanned<pebo_design::model::Decimal>>,

@@ -1,4 +1,4 @@
-//! The control law: which estimates it sees, and what it does with them.
+//! The control law, and the source of its estimates.
 
 use pebo_cas::Expr;
 use pebo_design::model::Simulation;
@@ -8,7 +8,7 @@ use super::layout::{baseline_estimates, time};
 use super::scope::{Estimates, Names, Sight, View};
 use crate::overrides::Overrides;
 
-/// Whose estimates the control law sees.
+/// The source of the control law's estimates.
 pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diagnostics) -> Option<String> {
     let simulation = names.simulation;
     let written = simulation.feedback.as_ref();
@@ -37,7 +37,7 @@ pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
     None
 }
 
-/// What `hat(x)` is in the control law.
+/// The values of `hat(x)` in the control law.
 fn visible_estimates(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
     let arena = &names.plant.arena;
     match feedback {
@@ -51,7 +51,7 @@ fn visible_estimates(names: &Names, feedback: &str, hats: &Estimates) -> Estimat
     }
 }
 
-/// The inputs in outputs, estimates and signals; the time, which is the last of them, is as it is.
+/// The inputs in outputs, estimates and signals; the time, if it is the last input, is the true one.
 pub(crate) fn law(names: &Names, feedback: &str, hats: &Estimates, problems: &mut Diagnostics) -> Vec<Expr> {
     let scope =
         names.scope(&View { sight: Sight::Outputs, hats: visible_estimates(names, feedback, hats), ..View::default() });

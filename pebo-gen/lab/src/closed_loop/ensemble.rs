@@ -1,7 +1,7 @@
-//! Many runs of one scenario, which differ in chance alone.
+//! Many runs of one scenario that differ in their random numbers alone.
 //!
-//! In: the number of runs; they have the seeds `seed`, `seed + 1`, .. Out: how the estimates are spread over the runs, in
-//! time and as a table. Of each run a few hundred numbers are kept, and not its trace.
+//! In: the number of runs; they have the seeds `seed`, `seed + 1`, .. Out: the spread of the estimates over the runs,
+//! in time and as a table. Keeps a few hundred numbers of each run, not its trace.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -20,56 +20,56 @@ use crate::figure::{Band, Sheet};
 use crate::summary::{Estimate, Summary, short, table};
 use crate::timing::real;
 
-/// Spans of time, of each of which the largest error is kept: more than a figure shows apart.
+/// Spans of time, each with its largest error: more than a figure resolves.
 const SPANS: u64 = 400;
 
-/// Errors that are kept of all runs together.
+/// The most errors that are kept of all runs combined.
 const MOST_ERRORS: u64 = 20_000_000;
 
 /// Spans of time that a figure needs at least.
 const FEWEST_SPANS: u64 = 40;
 
-/// How estimates are spread over many runs.
+/// The spread of estimates over many runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ensemble {
     /// The seed of the first run.
     pub seed: u64,
     /// The number of runs.
     pub runs: u64,
-    /// When they ended, in seconds.
+    /// The time of their end, in seconds.
     pub end: f64,
     /// The estimates of the model's observer, then those of each baseline.
     pub estimates: Vec<Spread>,
     /// The runs that stopped before their end; their errors count as infinite.
     pub stopped: u64,
-    /// Why the first of these stopped.
+    /// The reason of the first of these.
     pub reason: Option<String>,
-    /// The first run in which an estimate of the model's observer did not settle, and how many these are.
+    /// The number of runs in which an estimate of the model's observer did not settle, and the first of them.
     #[serde(skip)]
     pub(crate) unsettled: (u64, Option<Summary>),
     #[serde(skip)]
     pub(crate) courses: Vec<ErrorCourse>,
 }
 
-/// How the estimate of a state is spread over the runs; a number that most runs or a tenth of them do not have is absent.
+/// The spread of a state's estimate over the runs; a number that most runs or a tenth of them lack is absent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// Whose estimate, and of what.
+    /// The estimate.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// When it settles, in seconds; see [`Score::settled`](crate::Score::settled).
+    /// The time at which it settles, in seconds; see [`Score::settled`](crate::Score::settled).
     pub settled: Quantiles,
     /// The runs in which it does not settle.
     pub unsettled: u64,
     /// The root mean square of its error from then on.
     pub rms: Quantiles,
-    /// The largest magnitude of its error from then on.
+    /// The largest absolute value of its error from then on.
     pub worst: Quantiles,
-    /// The root mean square that the observer's numbers come to, from then on; absent where they are not known.
+    /// The root mean square that the observer predicts, from then on; absent where its numbers are not known.
     pub expected: Quantiles,
 }
 
-/// What half of the runs, and nine tenths of them, do not exceed.
+/// The median and the quantile of 90 % over the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Quantiles {
     /// The median.
@@ -82,11 +82,11 @@ pub struct Quantiles {
 pub(crate) type ErrorCourse = Vec<(f64, [f64; 3])>;
 
 impl Scenario {
-    /// Runs the loop so many times, with the seed of the scenario and those after it, for a caller who is told now and then
-    /// which part is done and may end it there.
+    /// Runs the loop `runs` times, with the seed of the scenario and those after it. `progress` gets the finished share
+    /// now and then, and may end the runs.
     ///
     /// # Errors
-    /// That the caller ended it, and the reason of the first run if all stop before their end.
+    /// [`Failure::Stopped`] if the caller ended it, and the reason of the first run if all stop before their end.
     pub fn run_often(
         &mut self,
         runs: u64,
@@ -117,7 +117,7 @@ impl Scenario {
         pool.finish(seed, runs, self)
     }
 
-    /// The same of many runs, of which at least one did not.
+    /// The advice on many runs, if an estimate did not settle in at least one.
     pub fn advise_on(&self, ensemble: &Ensemble) -> Option<Diagnostic> {
         let (count, first) = &ensemble.unsettled;
         let diagnostic = self.advise(first.as_ref()?)?;
@@ -147,12 +147,12 @@ impl Spans {
     }
 }
 
-/// What is kept of the runs.
+/// The numbers that are kept of the runs.
 #[derive(Debug)]
 struct Pool {
     spans: Spans,
     estimates: usize,
-    /// Of each estimate, span and run.
+    /// By estimate, span and run.
     peaks: Vec<Vec<Vec<f64>>>,
     summaries: Vec<Vec<[f64; 4]>>,
     first: Option<Summary>,
@@ -180,7 +180,7 @@ impl Pool {
         }
     }
 
-    /// No errors yet, of each estimate and span.
+    /// Zero errors for each estimate and span.
     fn empty(&self) -> Vec<Vec<f64>> {
         vec![vec![0.0; self.spans.count]; self.estimates]
     }
@@ -257,7 +257,7 @@ impl Ensemble {
         let name = |what: &str| [format!("{what}, median"), "90 %".to_owned()];
         let [settled, rms, worst] = ["settled to 1 %", "rms then", "worst then"].map(name);
         let heading = ["error of".to_owned()].into_iter().chain([settled, rms, worst].into_iter().flatten());
-        // A column that nobody has anything in is none.
+        // An empty column is left out.
         let is_known = self.estimates.iter().any(|spread| spread.expected.median.is_some());
         let known = |text: String| if is_known { text } else { String::new() };
         let mut rows: Vec<[String; 9]> = Vec::new();
@@ -289,7 +289,7 @@ impl Ensemble {
         text
     }
 
-    /// The largest error in each span of time as CSV: `t`, and of each estimate the quantiles of 10, 50 and 90 %.
+    /// The largest error in each span of time as CSV: `t`, and for each estimate the quantiles of 10, 50 and 90 %.
     pub fn csv(&self) -> String {
         let names = self.estimates.iter().map(|spread| spread.estimate.name());
         let columns = names.flat_map(|name| ["10", "50", "90"].map(|share| format!("{name}_error_{share}")));
@@ -302,8 +302,8 @@ impl Ensemble {
         lines.join("\n") + "\n"
     }
 
-    /// The figure: of each state the largest error in each span of time, its median over the runs and the band that eight
-    /// tenths of them lie in, for the model's observer and for each baseline.
+    /// The figure: for each state the largest error in each span of time, its median over the runs and the band of 10
+    /// to 90 %, for the model's observer and for each baseline.
     pub fn figure(&self, scenario: &Scenario) -> String {
         let mut states: Vec<&str> = Vec::new();
         for spread in &self.estimates {

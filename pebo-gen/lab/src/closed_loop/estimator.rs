@@ -1,7 +1,7 @@
-//! A model with another estimator.
+//! Replaces the estimator of a model.
 //!
-//! In: the model, and the estimator of the call. Out: the model as if its file had it, with settings that play the same part
-//! as those of the file's own.
+//! In: the model, and the estimator of the call. Out: the model as if its file had it, with settings that correspond to
+//! those of the file's own.
 
 use std::borrow::Cow;
 
@@ -32,7 +32,7 @@ fn with_estimator(written: &Observer, estimator: Estimator, step: Option<f64>) -
     let has = |key: &str| estimator.needs().contains(&key) || estimator.admits().contains(&key);
     let one = |text: &str| Decimal::parse(text, Span::NOWHERE).ok().map(placed);
     let list = |text: &str| one(text).into_iter().collect::<Vec<_>>();
-    // Gradients and least squares turn at the same rate at the start where a gain is the other's covariance.
+    // Gradients and least squares have the same speed at the start where a gain is the other's covariance.
     let speed = match written.estimator() {
         Estimator::Gradient | Estimator::NormalisedGradient => &written.gain,
         Estimator::LeastSquares | Estimator::LeastSquaresDrem => &written.covariance,
@@ -66,7 +66,7 @@ fn with_estimator(written: &Observer, estimator: Estimator, step: Option<f64>) -
     }
 }
 
-/// A section of known numbers without these, for gains: only least squares has a use for them.
+/// A section of known numbers without these, for gains: only least squares use them.
 fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
     let filter = step.and_then(|step| Decimal::parse(&format!("{:e}", BANDWIDTH / step), Span::NOWHERE).ok());
     Observer {

@@ -1,7 +1,7 @@
-//! One table for all values of an instant.
+//! The table with all values of an instant.
 //!
-//! Every formula of a run reads its symbols from this table, so that what one formula computes is
-//! where the next one looks for it.
+//! Every formula of a run reads its symbols from this table, so that the values of one formula are where the next one
+//! looks for them.
 
 use std::ops::Range;
 
@@ -16,25 +16,25 @@ use crate::observe::design::program;
 /// The position of time.
 pub(crate) const TIME: usize = 0;
 
-/// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
+/// The positions of the values: time; x, y and the baselines' states, which are integrated; inputs; estimates; the
+/// baselines' estimates; signals and courses; samples of imperfect sensors; signs in the rates.
 #[derive(Debug)]
 pub(crate) struct Layout {
     /// The symbols in the order of the table; behind those of the ranges, signs in the rates.
     pub(crate) symbols: Vec<Symbol>,
-    /// x, y and the baselines' states together.
+    /// x, y and the baselines' states combined.
     pub(crate) state: Range<usize>,
     pub(crate) x: Range<usize>,
-    /// The outputs as they are.
+    /// The true outputs.
     pub(crate) y: Range<usize>,
     pub(crate) u: Range<usize>,
-    /// The time as observers are measured_time it, which then is the last of the inputs.
+    /// The time as observers measure it, which then is the last of the inputs.
     pub(crate) measured_time: Option<usize>,
     /// The observer's estimates.
     pub(crate) hat: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
     pub(crate) baseline_estimates: Range<usize>,
-    /// Signals, then the courses of what is true of the plant.
+    /// Signals, then the courses of true parameters and states.
     pub(crate) signals: Range<usize>,
     /// The last sample of each output that arrived; empty where sensors are perfect.
     pub(crate) last_samples: Range<usize>,
@@ -81,7 +81,7 @@ impl Layout {
         }
     }
 
-    /// The inputs but for the time.
+    /// The inputs without the time.
     pub(crate) fn commanded(&self) -> Range<usize> {
         self.u.start..self.measured_time.unwrap_or(self.u.end)
     }
@@ -97,7 +97,7 @@ impl Layout {
     }
 }
 
-/// Time as it is; what observers are measured_time of it is an input. No declared name is `t` where there is a simulation.
+/// The true time; the time that observers measure is an input. No declared name is `t` where there is a simulation.
 pub(crate) fn time(arena: &Arena) -> Symbol {
     arena.generated("t")
 }

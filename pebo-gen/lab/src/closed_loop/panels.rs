@@ -1,4 +1,4 @@
-//! The parts of the figure: those that the model file describes, or errors, outputs and inputs.
+//! The panels of a run's figure: those that the model file describes, or errors, outputs and inputs.
 //!
 //! A curve that shows estimates of the observer is drawn once more for each baseline that estimates
 //! the same states, with the baseline's name beside it.
@@ -51,7 +51,7 @@ struct PanelResolver<'a> {
 }
 
 impl PanelResolver<'_> {
-    /// As the file has them; estimate less truth is the error, which of an angle is the shorter way round.
+    /// The panels of the file; estimate less truth is the error, for an angle the shorter way round.
     fn written(&mut self, errors: &[Expr], problems: &mut Diagnostics) {
         let arena = &self.names.plant.arena;
         let differences = self.hats.iter().map(|(state, hat)| arena.sub(*hat, arena.variable(state)));
@@ -72,8 +72,8 @@ impl PanelResolver<'_> {
         }
     }
 
-    /// Errors on a logarithmic axis, which alone shows those of all units and sizes; outputs and inputs, of each unit on an
-    /// axis of their own.
+    /// Errors on a logarithmic axis, which alone shows all units and sizes; outputs and inputs, each unit on an axis of
+    /// its own.
     fn usual(&mut self, errors: &[Expr]) {
         let plant = self.names.plant;
         let arena = &plant.arena;

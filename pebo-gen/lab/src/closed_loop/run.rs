@@ -1,11 +1,11 @@
-//! The loop, sample by sample.
+//! Runs the closed loop, sample by sample.
 //!
 //! ```text
-//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, measured_time of u_0 -> u_1 -> ..
+//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1, u_0 -> observer -> u_1 -> ..
 //! ```
 //!
-//! Between y and the observers are the sensors, whose samples may be late, wrong, or not there. With jitter the instants
-//! move, at which the loop samples and sets its inputs; observers are measured_time the period that is meant.
+//! Between y and the observers are the sensors, whose samples may be late, wrong, or missing. With jitter the instants
+//! move at which the loop samples and sets its inputs; observers get the nominal period.
 
 use std::ops::ControlFlow;
 
@@ -31,7 +31,7 @@ use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary};
 use crate::timing::real;
 
-/// How often progress is reported.
+/// The number of reports of progress.
 const REPORTS: u64 = 500;
 
 impl Scenario {
@@ -40,15 +40,15 @@ impl Scenario {
         self.run_while(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// The same, but for a caller who is measured_time now and then which part is done, 0 to 1, and may end it there with
-    /// [`Failure::Stopped`].
+    /// [`run`](Self::run) with reports: `progress` gets the finished share, 0 to 1, now and then, and may end the run
+    /// with [`Failure::Stopped`].
     pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
         let mut record = Record::new(self);
         let summary = self.follow(&mut |sample, table| record.take(sample, table), progress)?;
         Ok(record.finish(summary))
     }
 
-    /// Runs the loop, shows its table at each sample, and gives what it came to.
+    /// Runs the loop, passes its table at each sample to `show`, and returns the summary.
     pub(crate) fn follow(
         &self,
         show: &mut dyn FnMut(u64, Snapshot<'_>),
@@ -114,7 +114,7 @@ impl Scenario {
     }
 }
 
-/// What there is to see at a sample.
+/// The loop's values at a sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Snapshot<'a> {
     /// All values.
@@ -188,7 +188,7 @@ impl<'a> LoopState<'a> {
         };
         machine.read_signals();
         let mut start = Formulas::new(&scenario.start);
-        // Baselines start from what the sensors show of the plant's start.
+        // Baselines start from the sensors' samples of the plant's start.
         for _ in 0..2 {
             let state = start.of(&machine.table);
             machine.table[layout.state.clone()].copy_from_slice(state);
@@ -219,7 +219,7 @@ impl<'a> LoopState<'a> {
         }
         let arrives = self.measure(sample);
         if let Some(measured_time) = self.scenario.layout.measured_time {
-            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is measured_time.
+            // An input holds for an interval, so the time is its mean there. Jitter is not measured.
             self.table[measured_time] = timing.at(sample) - timing.step / 2.0;
         }
         let state = self.scenario.layout.state.clone();
@@ -236,7 +236,7 @@ impl<'a> LoopState<'a> {
         self.estimate(sample, arrives)
     }
 
-    /// Why the integration came to a stand.
+    /// The failure for a standstill of the integration.
     fn standstill(&self, Standstill { steps, at, state, fast }: Standstill) -> Failure {
         let slow = fast.map(|(place, rate)| Failure::Slow {
             at,
@@ -270,7 +270,7 @@ impl<'a> LoopState<'a> {
         }
     }
 
-    /// Lets the sensors take this sample, which `measured` then has; whether it arrives.
+    /// Lets the sensors take this sample into `measured`; returns true if it arrives.
     fn measure(&mut self, sample: u64) -> bool {
         let layout = &self.scenario.layout;
         let (before, after) = self.table.split_at_mut(layout.last_samples.start);
@@ -280,7 +280,7 @@ impl<'a> LoopState<'a> {
         arrives
     }
 
-    /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
+    /// Passes the present sample, if it arrives, and the inputs of the interval before to all observers.
     fn estimate(&mut self, sample: u64, arrives: bool) -> Result<(), Failure> {
         let layout = &self.scenario.layout;
         for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
@@ -307,7 +307,7 @@ impl<'a> LoopState<'a> {
         }
     }
 
-    /// Whether the values at these positions are finite.
+    /// Checks that the values at these positions are finite.
     fn admit(&self, range: std::ops::Range<usize>) -> Result<(), Failure> {
         match range.into_iter().find(|position| !self.table[*position].is_finite()) {
             None => Ok(()),
@@ -318,7 +318,7 @@ impl<'a> LoopState<'a> {
     }
 }
 
-/// What is kept of a run.
+/// The rows and curves that are kept of a run.
 #[derive(Debug)]
 struct Record<'a> {
     scenario: &'a Scenario,

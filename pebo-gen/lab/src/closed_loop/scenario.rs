@@ -1,7 +1,7 @@
-//! A model's sections `observer` and `simulation`, resolved: everything that a run needs, as programs.
+//! A scenario: a model's sections `observer` and `simulation`, resolved to the programs of a run.
 //!
-//! In: an accepted derivation with what was written, and settings of the call. Out: the scenario, or
-//! every mistake in the sections. After this, a run can fail only by what its numbers do.
+//! In: an accepted derivation with its model, and settings of the call. Out: the scenario, or every mistake in the
+//! sections. After this, a run can fail only by its numbers.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -34,7 +34,7 @@ use crate::summary::advice::{Origin, advise};
 use crate::summary::{Estimate, Summary};
 use crate::timing::Timing;
 
-/// Numbers that a table may hold; as text this is some hundred megabytes.
+/// The most numbers of a table; as text this is some hundred megabytes.
 const MOST_VALUES: f64 = 2e7;
 
 /// A closed loop, ready to be run.
@@ -53,14 +53,14 @@ pub struct Scenario {
     pub(crate) start: Program,
     /// The values of states and outputs that are not integrated, with their positions in the table.
     pub(crate) given: (Vec<usize>, Program),
-    /// What the sensors showed last.
+    /// The last samples of the sensors.
     pub(crate) measured: Program,
     pub(crate) sensors: Sensors,
-    /// How far instants are from their places at most, in steps.
+    /// The largest jitter of instants, in steps.
     pub(crate) jitter: f64,
-    /// Of chance.
+    /// The seed of the random numbers.
     pub(crate) seed: u64,
-    /// In what the plant and its sensors differ from what the model says: keys of the section.
+    /// The differences of plant and sensors from the model: keys of the section.
     pub(crate) departures: Vec<&'static str>,
     /// The first state that is given a course, if no parameter is.
     moving_state: Option<String>,
@@ -72,7 +72,7 @@ pub struct Scenario {
     pub(crate) switches: Option<SwitchPrograms>,
     /// The baselines' estimates.
     pub(crate) baseline_estimates: Program,
-    /// Baselines that are fed samples, with where they write their estimates.
+    /// Baselines that take samples, with the positions of their estimates.
     pub(crate) followers: Vec<(Range<usize>, NamedBaseline)>,
     /// The inputs.
     pub(crate) control: Program,
@@ -87,7 +87,7 @@ pub struct Scenario {
     pub(crate) columns: Vec<String>,
     /// The names of the table's values.
     pub(crate) names: Vec<String>,
-    /// What to do where the left inverse has no value at the start of the extension.
+    /// The help where the left inverse has no value at the start of the extension.
     restart: String,
     span: Span,
 }
@@ -96,11 +96,11 @@ pub struct Scenario {
 #[derive(Debug)]
 pub(crate) struct ScoredEstimate {
     pub(crate) estimate: Estimate,
-    /// Where the state stands in the table.
+    /// The position of the state in the table.
     pub(crate) truth: usize,
-    /// Of an angle.
+    /// The period of an angle.
     pub(crate) period: Option<f64>,
-    /// Of a state that the outputs show only up to multiples of it.
+    /// The step, if the outputs determine the state only up to multiples of it.
     pub(crate) step: Option<f64>,
 }
 
@@ -135,7 +135,7 @@ impl Scenario {
         &self.estimator
     }
 
-    /// What there is to say of a run that did not converge: why, and what mends it.
+    /// The advice on a run that did not converge: reason and mend.
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
         advise(
             summary,
@@ -168,8 +168,8 @@ impl Scenario {
     }
 }
 
-/// What to do where the left inverse has no value at the start of the extension: the start that is chosen where nobody says
-/// one, if there is any.
+/// The help where the left inverse has no value at the start of the extension: the start that is chosen by default, if
+/// there is one.
 fn restart(names: &Names, derivation: &Derivation) -> String {
     let plant = names.plant;
     let phi: Vec<String> = plant.phi.iter().map(|phi| plant.arena.print(phi.expr)).collect();
@@ -300,7 +300,7 @@ fn moving_state(names: &Names) -> Option<String> {
     of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
 }
 
-/// x, y and the baselines' states at the start, where the inputs are still 0.
+/// x, y and the baselines' states at the start, with inputs 0.
 fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
@@ -317,12 +317,12 @@ fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems:
     arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
 }
 
-/// The extension at the start, as wrong as the call asks for.
+/// The extension at the start, with the share of its error that the call asks for.
 fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr], share: f64, chi_0: &mut [f64]) {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
     let at: BTreeMap<Symbol, Expr> = states.zip(start.iter().copied()).chain(names.numbers()).collect();
-    // The inputs are still 0, as where states are given by them.
+    // The inputs are still 0, as for states that depend on them.
     let mut table = vec![0.0; layout.symbols.len()];
     for (position, signal) in layout.signals.clone().zip(signals) {
         table[position] = signal.course().value(0.0);
@@ -332,14 +332,14 @@ fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr],
         if let Ok(program) = layout.program(arena, &[arena.substitute(formula.expr, &at)], Span::NOWHERE) {
             Interpreter::new(&program).run(&table, &mut value);
         }
-        // Where phi has no value at the start, the extension begins where it did.
+        // Where phi has no value at the start, the extension keeps its own.
         if value[0].is_finite() {
             *chi = value[0] + share * (*chi - value[0]);
         }
     }
 }
 
-/// The rates of x, y and the baselines' states; of what is not integrated, 0.
+/// The rates of x, y and the baselines' states; 0 for those that are not integrated.
 fn rates(
     names: &Names,
     truth: &Truth,
@@ -374,7 +374,7 @@ fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
     rates.iter().flat_map(|rate| state.iter().map(|symbol| arena.derivative(*rate, *symbol))).collect()
 }
 
-/// The baselines that are fed samples, with where they write.
+/// The baselines that take samples, with the positions of their estimates.
 fn followers(plant: &Plant, layout: &Layout, baselines: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
     let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
     let follower = |baseline: &mut ResolvedBaseline| {
@@ -386,12 +386,12 @@ fn followers(plant: &Plant, layout: &Layout, baselines: &mut [ResolvedBaseline])
     baselines.iter_mut().filter_map(follower).collect()
 }
 
-/// Up to what states are known.
+/// Periods up to which states are known.
 #[derive(Debug)]
 pub(crate) struct Periods {
-    /// Of angles: what differs by it is the same.
+    /// Of angles: values that differ by it are the same.
     of_angles: BTreeMap<Symbol, Expr>,
-    /// Of states that are no angles, which the outputs do not tell from one another.
+    /// Of states that are no angles: the outputs do not distinguish values that differ by it.
     steps: BTreeMap<Symbol, Expr>,
 }
 
@@ -407,7 +407,7 @@ impl Periods {
     }
 }
 
-/// Estimate less truth; for an angle, the difference that is least in magnitude.
+/// Estimate less truth; for an angle, the difference with the least absolute value.
 fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
     use pebo_cas::Function::{Atan2, Cos, Sin};
     let arena = &plant.arena;
@@ -471,7 +471,7 @@ fn columns(plant: &Plant, recovered: &[Symbol], baselines: &[ResolvedBaseline]) 
     columns
 }
 
-/// Only a call asks for a table that is too large: a file does not say how often rows are written.
+/// Refuses a table that is too large. Only a call can ask for one, as a file does not set the interval of rows.
 fn admit_table(timing: &Timing, columns: usize) -> Result<(), Diagnostic> {
     let columns = u64::try_from(columns).unwrap_or(u64::MAX);
     let values = crate::timing::real(timing.rows()) * crate::timing::real(columns);

@@ -27,7 +27,7 @@ use svg::{Anchor, Drawing, width};
 pub(super) struct Sheet<'a> {
     /// The title as plain text, and as it is drawn.
     pub(super) title: (&'a str, Label),
-    /// From when to when, in seconds, and what the time is called.
+    /// The range of time in seconds, and its label.
     pub(super) time: ([f64; 2], Label),
     pub(super) panels: &'a [Panel],
     /// The points of each panel's curves.
@@ -69,7 +69,7 @@ impl Sheet<'_> {
     }
 }
 
-/// The unit in which this many seconds are read easily, and how many of it a second has.
+/// The unit in which this duration in seconds is read easily, and the number of units in a second.
 fn time_unit(duration: f64) -> (&'static str, f64) {
     match duration {
         d if d < 2e-4 => ("µs", 1e6),

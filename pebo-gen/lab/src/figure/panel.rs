@@ -18,8 +18,8 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// Signals that stand on one axis: on a linear one, those of one unit. A flow in cubic metres per second is flat at zero
-    /// beside a temperature in kelvin.
+    /// Groups signals that share an axis: on a linear one, those of one unit. A flow in cubic metres per second is flat
+    /// at zero beside a temperature in kelvin.
     pub(crate) fn groups<C>(plant: &Plant, scale: Scale, curves: Vec<C>, symbol: impl Fn(&C) -> Symbol) -> Vec<Vec<C>> {
         let mut groups: Vec<(Option<&String>, Vec<C>)> = Vec::new();
         for curve in curves {
@@ -32,7 +32,7 @@ impl Panel {
         groups.into_iter().map(|(_, group)| group).collect()
     }
 
-    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
+    /// A panel of signals: a common unit goes to the axis, else each goes beside its curve.
     pub(crate) fn of_signals(plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label)>) -> Self {
         let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
         let unit = unit::same(curves.iter().map(|curve| unit_of(&curve.0))).map(str::to_owned);

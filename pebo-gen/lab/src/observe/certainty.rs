@@ -1,45 +1,46 @@
-//! Whether estimates are known as well as wanted.
+//! Judges whether estimates are as certain as wanted.
 //!
-//! In: the standard errors that an observer expects of its estimates, as a run goes on, and those that its author wants. Out:
-//! since when all are as small as wanted, or which one is not. The words are those of the runtime's
-//! [`Monitor`](pebo_runtime::Monitor), which does the same for the unknowns of a regression whose gains are written.
+//! In: the standard errors that an observer predicts for its estimates, as a run goes on, and those that its author
+//! wants. Out: the time since which all are as small as wanted, or the one that is not. The words are those of the
+//! runtime's [`Monitor`](pebo_runtime::Monitor), which does the same for the unknowns of a regression whose gains are
+//! written.
 
 use serde::Serialize;
 
-/// A certainty is lost once a variance is twice what is wanted, so that it does not come and go with every sample.
+/// A certainty is lost once a variance is twice the wanted one, so that it does not come and go with every sample.
 const LOST: f64 = std::f64::consts::SQRT_2;
 
-/// How well estimates are known.
+/// The certainty of estimates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "state", rename_all = "kebab-case")]
 pub enum Certainty {
     /// Never as well as wanted.
     NotYet {
-        /// The state that is known least, beside what is wanted of it.
+        /// The state that is known least, relative to its wanted standard error.
         weakest: String,
         /// Its standard error at the end; none where none is predicted.
         error: Option<f64>,
-        /// The one that is wanted.
+        /// The wanted standard error.
         wanted: f64,
     },
     /// As well as wanted.
     Converged {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
     },
-    /// They were, and are no longer.
+    /// No longer as well as wanted.
     Lost {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
-        /// The state that is known least, beside what is wanted of it.
+        /// The state that is known least, relative to its wanted standard error.
         weakest: String,
     },
 }
 
-/// The standard error that is wanted of a state.
+/// The wanted standard error of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Wanted {
-    /// The place of its estimate.
+    /// The index of its estimate.
     pub(crate) estimate: usize,
     pub(crate) state: String,
     pub(crate) error: f64,
@@ -62,12 +63,12 @@ enum State {
 }
 
 impl<'a> CertaintyMonitor<'a> {
-    /// Before the first sample.
+    /// The certainty before the first sample.
     pub(crate) fn new(wanted: &'a [Wanted]) -> Self {
         Self { wanted, known: State::NotYet, weakest: None }
     }
 
-    /// Looks at the standard errors of an instant, where they are known.
+    /// Takes the standard errors of an instant, where they are known.
     pub(crate) fn look(&mut self, t: f64, errors: Option<&[f64]>) {
         let over = |(wanted, error): &(&Wanted, f64)| error / wanted.error;
         let known = self.wanted.iter().filter_map(|wanted| Some((wanted, *errors?.get(wanted.estimate)?)));
@@ -80,7 +81,7 @@ impl<'a> CertaintyMonitor<'a> {
         };
     }
 
-    /// What came of it; none where nothing is wanted.
+    /// The certainty now; none where nothing is wanted.
     pub(crate) fn certainty(&self) -> Option<Certainty> {
         let first = self.wanted.first()?;
         let (weakest, error) = self.weakest.map_or((first, None), |(wanted, error)| (wanted, Some(error)));

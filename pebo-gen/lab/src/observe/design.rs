@@ -1,4 +1,4 @@
-//! The observer as it was derived, with its settings: what the interpreted model computes.
+//! The derived observer with its settings, as programs to be interpreted.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::score::SETTLED;
 pub(crate) struct Design {
     /// The states that it recovers.
     pub(crate) recovered: Vec<Symbol>,
-    /// Whether the regression is static.
+    /// True for a static regression.
     pub(crate) is_static: bool,
     /// Positions in y of the outputs whose rates the dynamic regression uses.
     pub(crate) rows: Vec<usize>,
@@ -30,13 +30,13 @@ pub(crate) struct Design {
     pub(crate) coordinates: usize,
     /// The number of equations of the regression.
     pub(crate) equations: usize,
-    /// Whether the cascade is generalised.
+    /// True for a generalised cascade.
     pub(crate) is_generalised: bool,
-    /// From y, u to h, and in a generalised cascade behind it to Lambda by rows.
+    /// From y, u to h, then Lambda by rows in a generalised cascade.
     pub(crate) cascade: Program,
-    /// From the extension, y, u to the known part of the regression, and behind it to the factor of the unknowns by rows.
+    /// From the extension, y, u to the known side of the regression, then the factor of the unknowns by rows.
     pub(crate) regression: Program,
-    /// From the extension and y to the same under the derivative, in an implicit regression.
+    /// From the extension and y to the same sides under the derivative, in an implicit regression.
     pub(crate) primitive: Option<Program>,
     /// From eta to theta.
     pub(crate) theta: Program,
@@ -44,11 +44,11 @@ pub(crate) struct Design {
     pub(crate) phi_left: Program,
     /// The number of unknowns eta of the model's regression.
     pub(crate) unknowns: usize,
-    /// What is estimated, as formulas in theta.
+    /// The estimated unknowns, as formulas in theta.
     pub(crate) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(crate) settings: Settings,
-    /// The standard errors that are wanted.
+    /// The wanted standard errors.
     pub(crate) wanted: Vec<Wanted>,
 }
 
@@ -82,7 +82,7 @@ impl Design {
         let lambda = cascade.lambda.as_ref().map(|rows| rows.concat()).unwrap_or_default();
         let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
         let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
-        // The unknowns of the output form are what stands under the derivative at the start, then those of z.
+        // The unknowns of the output form are the outputs under the derivative at the start, then those of z.
         let outputs = regression.rows.iter().map(|row| format!("{}(0)", arena.name(plant.y[*row].symbol)));
         let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
@@ -129,7 +129,7 @@ impl Design {
         self.unknown_names.len()
     }
 
-    /// Whether a value of a recovered state is beyond the bounds that `within` says of it, by more than settles.
+    /// True if a value of a recovered state is beyond its bounds in `within` by more than the tolerance of settling.
     pub(crate) fn is_outside(&self, state: usize, value: f64) -> bool {
         let [lower, upper] = &self.settings.within;
         let slack = SETTLED * value.abs();
@@ -149,7 +149,7 @@ impl Design {
     }
 }
 
-/// The standard errors that are wanted of the recovered states; of a state that is not recovered none can be had.
+/// The wanted standard errors of the recovered states; one of another state is reported.
 fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
     let arena = &request.plant.arena;
     let mut found = Vec::new();

@@ -1,8 +1,8 @@
-//! An observer fed sample by sample, some of which are missing.
+//! Drives an observer sample by sample, with missing samples bridged.
 //!
-//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. What is missing or
-//! refused is bridged as on the target: the next sample covers the time since the last one that was accepted, with the mean
-//! of the inputs (the runtime's [`Gap`]). Knows nothing of where samples are from.
+//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. Missing and refused
+//! samples are bridged as on the target: the next sample covers the time since the last accepted one, with the mean of
+//! the inputs (the runtime's [`Gap`]). Independent of the source of samples.
 
 use pebo_runtime::{Fault, Gap};
 
@@ -10,14 +10,14 @@ use super::interpreted::DynObserver;
 use super::sizes::{LARGEST, pad};
 use crate::score::faults::Faults;
 
-/// Samples in a row that may be refused: an observer that refuses as many has lost its state, and a later sample will not
-/// bring it back.
+/// The most refused samples in a row: an observer that refuses as many has lost its state, and a later sample will not
+/// restore it.
 const PATIENCE: u64 = 100;
 
-/// Samples from one innovation that is scored to the next: each costs a step.
+/// Samples from one judged innovation to the next: each costs a step.
 const JUDGING_INTERVAL: u64 = 16;
 
-/// An observer at work.
+/// A running observer.
 #[derive(Debug)]
 pub(crate) struct ObserverDriver {
     pub(crate) observer: Box<dyn DynObserver>,
@@ -29,14 +29,14 @@ pub(crate) struct ObserverDriver {
     dropped: u64,
     /// The samples that lacked outputs.
     parted: u64,
-    /// Samples since an innovation was scored.
+    /// Samples since an innovation was judged.
     unjudged: u64,
     /// The sum of the normalised squares of innovations, and their number.
     surprise: (f64, u64),
 }
 
 impl ObserverDriver {
-    /// Before the first sample.
+    /// The observer before the first sample.
     pub(crate) fn new(observer: Box<dyn DynObserver>) -> Self {
         Self {
             observer,
@@ -51,8 +51,8 @@ impl ObserverDriver {
         }
     }
 
-    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A fault
-    /// is counted, and leaves the estimates as they are.
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A
+    /// fault is counted, and leaves the estimates as they are.
     ///
     /// # Errors
     /// The fault of a sample that was refused.
@@ -82,7 +82,7 @@ impl ObserverDriver {
             return Ok(());
         };
         self.faults.add(fault);
-        // A sample off the range of its sensor says nothing of the observer, however many there are.
+        // Samples out of the range of their sensor say nothing of the observer, however many there are.
         self.refused += u64::from(!matches!(fault, Fault::OutputRange { .. } | Fault::InputRange { .. }));
         if self.started {
             self.wait(u, dt);
@@ -90,17 +90,17 @@ impl ObserverDriver {
         Err(fault)
     }
 
-    /// Whether nothing good is to be expected of the observer any more: it refused its first sample, or many in a row.
+    /// True once the observer has refused its first sample, or many in a row.
     pub(crate) fn has_given_up(&self) -> bool {
         self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
     }
 
-    /// Whether a sample has been accepted.
+    /// True if a sample has been accepted.
     pub(crate) fn has_started(&self) -> bool {
         self.started
     }
 
-    /// Takes an interval at whose end no sample arrived.
+    /// Takes an interval without a sample at its end.
     pub(crate) fn miss(&mut self, u: &[f64], dt: f64) {
         self.dropped += 1;
         self.wait(u, dt);
@@ -125,13 +125,13 @@ impl ObserverDriver {
         (self.surprise.1 > 0).then(|| self.surprise.0 / crate::timing::real(self.surprise.1))
     }
 
-    /// The standard errors of the estimates, with what has passed since the last accepted sample.
+    /// The standard errors of the estimates now, some time after the last accepted sample.
     pub(crate) fn standard_errors(&self) -> Option<Vec<f64>> {
         let age = self.gap.map_or(0.0, |mut gap| gap.take().1);
         self.observer.standard_errors(age)
     }
 
-    /// How often the observer began anew after a gap.
+    /// The number of restarts after gaps.
     pub(crate) fn restarts(&self) -> u64 {
         self.observer.restarts()
     }

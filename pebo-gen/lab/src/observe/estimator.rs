@@ -1,9 +1,9 @@
-//! Every estimator of the runtime library behind one face, so that the observer need not be compiled for each.
+//! Every estimator of the runtime library as one type, so that the observer need not be compiled for each.
 //!
 //! A model is padded with zeros to one of a few sizes. Zero rows and columns of a regressor change no estimate of a
-//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: what its extension has to
-//! say of the padding is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled
-//! once for each size, not for every number of unknowns.
+//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: the padded block of its
+//! extension is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled once
+//! for each size, not for every number of unknowns.
 
 use std::fmt;
 
@@ -16,13 +16,13 @@ use pebo_runtime::{
 use super::setup::{self, Covariance, Extension};
 use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
 
-/// An estimator of a model that was padded to the size N.
-/// Not behind a pointer where that can be: the observer works on a copy in each step.
+/// An estimator of a model padded to the size N. Not behind a pointer where that can be: the observer works on a copy
+/// in each step.
 #[derive(Debug)]
 pub(crate) enum PaddedEstimator<const N: usize> {
     Gradient(Gradient<f64, N>),
     Normalised(NormalisedGradient<f64, N>),
-    /// The one that knows how uncertain it is.
+    /// The one with a covariance.
     Squares(LeastSquares<f64, N>),
     Mixed(Box<dyn DynEstimator<N>>),
 }
@@ -30,7 +30,7 @@ pub(crate) enum PaddedEstimator<const N: usize> {
 impl<const N: usize> PaddedEstimator<N> {
     /// The estimator with its settings, which have a value for each of the unknowns.
     pub(crate) fn new(settings: &setup::Estimator) -> Result<Self, Fault> {
-        // What is set for a padded unknown has no effect, but must be positive.
+        // Settings of a padded unknown have no effect, but must be positive.
         let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
         Ok(match settings {
             setup::Estimator::Gradient(gain) => Self::Gradient(Gradient::diagonal(&all(gain))?),
@@ -47,7 +47,7 @@ impl<const N: usize> PaddedEstimator<N> {
             setup::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
                 Self::Mixed(mixed(gain, extension)?)
             }
-            // Refused with the settings.
+            // Refused when the settings are resolved.
             setup::Estimator::Drem { .. } => return Err(Fault::Gain),
         })
     }
@@ -119,7 +119,7 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
     }
 }
 
-/// An estimator whose type is not known.
+/// An estimator as a trait object.
 pub(crate) trait DynEstimator<const N: usize>: fmt::Debug {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault>;
     fn estimate(&self) -> SVector<f64, N>;
@@ -162,7 +162,7 @@ impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> DynEstimato
 
 /// DREM of as many unknowns as there are gains.
 fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn DynEstimator<N>>, Fault> {
-    // Padding has no error to lose, and with the largest gain it is never what a finite-time estimator waits for.
+    // Padding has no error to lose, and with the largest gain a finite-time estimator never waits for it.
     let gains = padded(gain, gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max));
     let all = |values: &[f64]| -> SVector<f64, MOST_MIXED> { padded(values, 1.0) };
     let (extension, finite_time): (Box<dyn DynExtension>, _) = match extension {
@@ -191,7 +191,7 @@ where
     Response::new(estimator)
 }
 
-/// A regressor extension whose type is not known.
+/// A regressor extension as a trait object.
 trait DynExtension: fmt::Debug {
     fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault>;
     fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED>;
@@ -240,7 +240,7 @@ impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Dyn
     }
 }
 
-/// An extension of a padded regression, with the identity where the padding is.
+/// An extension of a padded regression, with the identity for the padding.
 #[derive(Debug)]
 struct CompletedExtension {
     extension: Box<dyn DynExtension>,
@@ -285,7 +285,7 @@ impl RegressorExtension<f64, LARGEST, MOST_MIXED> for CompletedExtension {
     }
 }
 
-/// DREM in a padded model, of which it takes the unknowns that there may be. Its equations are padded to the largest
+/// DREM in a padded model. It takes the first unknowns, up to its own size; its equations are padded to the largest
 /// size.
 #[derive(Clone, Debug)]
 struct PaddedDrem<E>(E);
@@ -308,7 +308,7 @@ impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {
-        // What one of the sizes has beyond the other is padding, which no turn mixes with the unknowns.
+        // The difference of the sizes is padding, which no turn mixes with the unknowns.
         self.0.turn(&turn.leading());
     }
 

@@ -1,4 +1,4 @@
-//! An estimator beside which the information in its data is kept.
+//! An estimator with the Gramian of its data.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
@@ -7,7 +7,7 @@ use super::estimator::PaddedEstimator;
 use super::excitation::{ComponentInformation, Gramian};
 use super::setup::{self, Covariance, Extension};
 
-/// An estimator of a padded model, with what its data say.
+/// An estimator of a padded model, with the Gramian of its data.
 #[derive(Clone, Debug)]
 pub(crate) struct MonitoredEstimator<const N: usize> {
     estimator: PaddedEstimator<N>,
@@ -15,7 +15,7 @@ pub(crate) struct MonitoredEstimator<const N: usize> {
 }
 
 impl<const N: usize> MonitoredEstimator<N> {
-    /// The estimator with its settings, of so many unknowns before padding.
+    /// The estimator with its settings, for this number of unknowns before padding.
     pub(crate) fn new(settings: &setup::Estimator, unknowns: usize) -> Result<Self, Fault> {
         let forgetting = match settings {
             setup::Estimator::LeastSquares(Covariance { forgetting, .. })
@@ -28,7 +28,7 @@ impl<const N: usize> MonitoredEstimator<N> {
         Ok(Self { estimator: PaddedEstimator::new(settings)?, information: Gramian::new(unknowns, forgetting) })
     }
 
-    /// What the data say of each component of the unknown.
+    /// The information of the data on each component of the unknown.
     pub(crate) fn component_information(&self) -> ComponentInformation {
         self.information.component_information()
     }

@@ -1,4 +1,4 @@
-//! What the regression goes through, of a kind and length that are not known before the run.
+//! The operator of the regression, of a kind and length that are not known before the run.
 
 use std::collections::VecDeque;
 
@@ -131,7 +131,7 @@ impl<const N: usize> Outcome<f64, N, N> for PaddedStep<N> {
     }
 }
 
-/// Of samples; of what went through a filter or window no row can be left out, and nobody asks.
+/// Rows of samples; from the outcome of a filter or window no row can be left out, and none is asked for.
 impl<const N: usize> Rows<f64, N> for PaddedStep<N> {
     fn weights(&self, dt: f64) -> SVector<f64, N> {
         match self {
@@ -156,7 +156,7 @@ pub(crate) struct Window<const N: usize> {
     samples: usize,
     /// Integrals over the steps in the window with their lengths, the oldest first.
     steps: VecDeque<Integral<N>>,
-    /// How many of the newest make up the front.
+    /// The number of the newest steps in the front.
     recent: usize,
     total: Total<N>,
     /// Full, it becomes the total.
@@ -313,7 +313,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
     }
 
     fn is_finite(&self) -> bool {
-        // What is not finite makes a sum so at once.
+        // A step that is not finite makes a sum so at once.
         self.total.is_finite() && self.front.is_finite()
     }
 }

@@ -1,4 +1,4 @@
-//! The section `observer`, complete: what regression and estimator are run with.
+//! The settings of regression and estimator in a run: the section `observer`, completed.
 
 use pebo_runtime::{Drift, Hold};
 
@@ -12,61 +12,61 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics};
 use super::request::Request;
 use super::sizes::{LONGEST, MOST_MIXED};
 
-/// Settings of an observer, with a value for each unknown where there may be one.
+/// Settings of an observer, with lists expanded to one value for each unknown.
 #[derive(Clone, Debug)]
 pub(crate) struct Settings {
-    /// What the regression goes through.
+    /// The operator of the regression.
     pub(crate) operator: Operator,
-    /// Whether the outputs themselves are the regressand.
+    /// True in the output form, where the outputs themselves are the regressand.
     pub(crate) output: bool,
-    /// The places of the outputs of the rows, where estimates are made of the outputs that are expected.
+    /// The indices of the rows' outputs, where estimates are made of the expected outputs.
     pub(crate) expected: Option<Vec<usize>>,
-    /// How samples are joined.
+    /// The hold between samples.
     pub(crate) hold: Hold,
     pub(crate) estimator: Estimator,
-    /// Between what each unknown is.
+    /// The bounds of each unknown.
     pub(crate) bounds: [Vec<f64>; 2],
-    /// Between what each recovered state is.
+    /// The bounds of each recovered state.
     pub(crate) within: [Vec<f64>; 2],
-    /// When the extension starts again from the estimate, if it does.
+    /// The trigger of re-basing, if there is one.
     pub(crate) rebase: Option<Rebase>,
     /// The extension at the start.
     pub(crate) chi_0: Vec<f64>,
     /// The limit of the gate that refuses outliers.
     pub(crate) gate: Option<f64>,
-    /// What samples may be.
+    /// The ranges of samples.
     pub(crate) limits: Option<Limits>,
-    /// What the settings were derived from, if the author did not choose them.
+    /// The known numbers that the settings were derived from, if the author did not choose them.
     pub(crate) known: Option<KnownNumbers>,
-    /// How the errors of the estimates are predicted, where the numbers are known.
+    /// The prediction of the estimates' errors, where the numbers are known.
     pub(crate) prediction: Option<Prediction>,
 }
 
-/// What the regression goes through.
+/// The operator of the regression.
 #[derive(Clone, Debug)]
 pub(crate) enum Operator {
     /// A filter of this bandwidth, in rad/s.
     Filter(f64),
-    /// The mean over so many samples.
+    /// The mean over this number of samples.
     Window(usize),
-    /// Each sample by itself, weighed by the standard deviation of each row.
+    /// Each sample by itself, weighted by the standard deviation of each row.
     Sampled(Vec<f64>),
 }
 
 /// An estimator of the runtime library.
 pub(crate) type Estimator = settings::Estimator<f64>;
 
-/// When the extension starts again from the estimate, as the runtime has it.
+/// The trigger of re-basing in the runtime's types.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Rebase {
-    /// After so many samples.
+    /// After this number of samples.
     Samples(u32),
-    /// In another form.
+    /// In a form without drift.
     Drift(Drift<f64>),
 }
 
 impl Rebase {
-    /// That of a section whose numbers the model's own check has seen to.
+    /// The trigger of a section, whose numbers the model's own check has admitted.
     fn of(written: settings::Rebase<f64>) -> Option<Self> {
         Some(match written {
             settings::Rebase::Samples(wanted) => Self::Samples(whole(wanted)?),
@@ -76,10 +76,10 @@ impl Rebase {
     }
 }
 
-/// What samples may be.
+/// The ranges of samples.
 pub(crate) type Limits = settings::Limits<f64>;
 
-/// What least squares need.
+/// The settings of least squares.
 pub(crate) type Covariance = settings::Covariance<f64>;
 
 /// The regressor extension of DREM.
@@ -89,7 +89,7 @@ pub(crate) type Extension = settings::Extension<f64>;
 pub(crate) type FiniteTime = settings::FiniteTime<f64>;
 
 impl Settings {
-    /// The settings of a model with this regression; what is missing in the section is reported.
+    /// The settings of a model with this regression; missing keys are reported.
     pub(crate) fn resolve(
         request: &Request,
         derivation: &Derivation,
@@ -138,7 +138,7 @@ impl Settings {
         })
     }
 
-    /// The settings that known numbers come to: those of the emitted code.
+    /// The settings derived from known numbers: those of the emitted code.
     fn of_known(
         request: &Request,
         (derivation, states): (&Derivation, usize),
@@ -165,7 +165,7 @@ impl Settings {
                     process_noise: process_noise.as_deref().map(all),
                 })
             }
-            // Known numbers come to least squares.
+            // Known numbers lead to least squares.
             _ => return None,
         };
         let chi_0 = all(&settings.chi_0);
@@ -200,13 +200,13 @@ fn bounds([lower, upper]: [Option<Vec<f64>>; 2], count: usize) -> [Vec<f64>; 2] 
     [or(lower, f64::NEG_INFINITY), or(upper, f64::INFINITY)]
 }
 
-/// As many samples, if there is room for them: a whole number above zero, which the model's own check has seen to.
+/// This number of samples, if there is room: the model's own check has admitted a whole number above zero only.
 fn samples(wanted: f64) -> Option<usize> {
     let found = (1..=LONGEST).zip(1_u64..).find(|(_, number)| crate::timing::real(*number) >= wanted);
     found.map(|(samples, _)| samples)
 }
 
-/// A whole number above zero that `u32` holds, which the model's own check has seen to.
+/// A whole number above zero in `u32`, which the model's own check has admitted.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range is tested before")]
 fn whole(wanted: f64) -> Option<u32> {
     (wanted >= 1.0 && wanted <= f64::from(u32::MAX)).then_some(wanted as u32)
@@ -224,7 +224,7 @@ impl Section<'_> {
         self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.request.section, message).help(help));
     }
 
-    /// Reports that there is neither filter nor window, or no room for the window.
+    /// Reports that filter and window are both missing, or that the window is too long.
     fn operator(&mut self) {
         let Some(window) = &self.written.window else {
             if self.written.filter.is_none() {
@@ -241,7 +241,7 @@ impl Section<'_> {
         }
     }
 
-    /// Reports what the estimator needs and the section lacks, and more unknowns than there is room for.
+    /// Reports settings of the estimator that the section lacks, and too many unknowns.
     fn estimator(&mut self, unknowns: usize) {
         use model::Estimator as Name;
         let name = self.written.estimator();

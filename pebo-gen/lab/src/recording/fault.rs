@@ -1,4 +1,4 @@
-//! What was wrong with rows, counted by kind: facts about the data, not ends of a run.
+//! Faults of rows, counted by kind: facts about the data that do not end a run.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use super::log::Blank;
 /// A kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RowFault {
-    /// A cell of this column has nothing in it.
+    /// A cell of this column is empty.
     Empty(usize),
     /// A cell of this column is NaN or infinite.
     NotFinite(usize),
@@ -26,7 +26,7 @@ pub(super) enum RowFault {
 }
 
 impl RowFault {
-    /// That of a cell of this column.
+    /// The fault of a cell of this column.
     pub(super) fn of_cell(column: usize, blank: Blank) -> Self {
         match blank {
             Blank::Empty => Self::Empty(column),
@@ -35,7 +35,7 @@ impl RowFault {
     }
 }
 
-/// How often each kind occurred, and the line of the first.
+/// The number of faults of each kind, and the line of the first.
 #[derive(Debug, Default)]
 pub(super) struct RowFaults {
     counts: Vec<(RowFault, u64, u64)>,
@@ -73,12 +73,12 @@ impl fmt::Display for FaultCount {
     }
 }
 
-/// A kind of fault, and how often it occurred.
+/// A kind of fault with its count.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FaultCount {
-    /// What was wrong, in words.
+    /// The fault in words.
     pub what: String,
-    /// How often.
+    /// The number of such faults.
     pub count: u64,
     /// The line of the first.
     pub line: u64,

@@ -1,4 +1,4 @@
-//! One table for all values of a row.
+//! The table with all values of a row.
 
 use std::ops::Range;
 
@@ -9,14 +9,14 @@ use pebo_design::plant::Plant;
 use pebo_design::program::Program;
 use pebo_design::source::{Diagnostic, Span};
 
-/// Which value stands where: the states that were measured, outputs, inputs of the row, estimates.
+/// The positions of the values: measured states, outputs, inputs of the row, estimates.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub(super) symbols: Vec<Symbol>,
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
     pub(super) u: Range<usize>,
-    /// The time as the observer is measured_time it, which then is the last of the inputs.
+    /// The time as the observer measures it, which then is the last of the inputs.
     pub(super) measured_time: Option<usize>,
     pub(super) hat: Range<usize>,
     /// The states that the observer recovers, with the symbols of their estimates.
@@ -24,7 +24,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The table of a plant of which the states at these positions were measured, and these are recovered.
+    /// The table of a plant whose states at these positions were measured, and whose states `recovered` are estimated.
     pub(super) fn new(plant: &Plant, measured: &[usize], recovered: &[Symbol]) -> Self {
         let arena = &plant.arena;
         let estimated: Vec<_> = recovered.iter().map(|state| (*state, estimate(arena, &arena.name(*state)))).collect();

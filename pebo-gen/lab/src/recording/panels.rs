@@ -1,4 +1,4 @@
-//! The parts of the figure of a replay: a panel for each estimate, beside the state where that was measured; errors;
+//! The panels of a replay's figure: a panel for each estimate, beside the state where that was measured; errors;
 //! residuals where no state was; outputs; inputs. On a linear axis all signals have one unit.
 
 use crate::figure::curve::GrowingCurve;
@@ -11,18 +11,18 @@ use pebo_design::plant::Plant;
 use super::layout::Layout;
 use super::residual::Residuals;
 
-/// Where a curve has its values.
+/// The source of a curve's values.
 #[derive(Clone, Copy, Debug)]
 enum CurveSource {
     /// At this position of the table.
     Table(usize),
-    /// Of the error of this number.
+    /// The error with this index.
     Error(usize),
-    /// Of the residual of this number.
+    /// The residual with this index.
     Residual(usize),
 }
 
-/// The panels, and where their curves have their values.
+/// The panels, and the sources of their curves.
 #[derive(Debug, Default)]
 pub(super) struct Panels {
     panels: Vec<Panel>,
@@ -85,7 +85,7 @@ impl Panels {
     }
 }
 
-/// The curves as far as they go.
+/// The curves so far.
 #[derive(Debug)]
 pub(super) struct Curves<'a> {
     panels: &'a Panels,

@@ -1,11 +1,11 @@
-//! The observer over the rows of a log.
+//! Runs the observer over the rows of a log.
 //!
 //! ```text
-//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, measured_time of u_0 -> ..
+//! row 0: y_0 -> observer, u_0 held -> row 1: y_1, u_0 -> observer -> ..
 //! ```
 //!
-//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then on.
-//! No more than a row is in memory, and what is kept of the run does not grow with it.
+//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then
+//! on. No more than a row is in memory, and the record of the run does not grow with it.
 
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -32,18 +32,18 @@ use super::replayed::{OutputResidual, Replayed};
 use super::residual;
 use super::scene::Replay;
 
-/// Rows from one look at what the data determine to the next.
+/// Rows from one evaluation of the excitation to the next.
 const GLANCES: u64 = 32;
 
-/// Rows from one look at the caller's clock to the next.
+/// Rows from one report of progress to the next.
 const LOOKS: u64 = 1024;
 
 /// Times that are this many durations away from zero are shown from the first row on.
 const FAR: f64 = 20.0;
 
 impl Replay {
-    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is measured_time of rows and bytes
-    /// now and then, and may end the run there.
+    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` gets the numbers of
+    /// rows and bytes now and then, and may end the run there.
     pub fn run(
         &self,
         log: &mut Log,
@@ -79,7 +79,7 @@ struct ReplayState<'a, 'w> {
     replay: &'a Replay,
     clock: Clock,
     signals: Interpreter,
-    /// The cells of the row, and what they say.
+    /// The cells of the row, and the values of their signals.
     cells: Vec<f64>,
     values: Vec<f64>,
     /// All values, see [`Layout`](super::layout::Layout).
@@ -121,7 +121,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             faults: RowFaults::default(),
             curves: replay.panels.start(),
             scores: replay.scored.iter().map(|scored| Scorer::new(scored.period)).collect(),
-            // Of these none is small in itself: what is measured_time is the last tenth.
+            // None of these is small in itself: the score is that of the last tenth.
             misfits: residuals.outputs.iter().map(|_| Scorer::new(Some(0.0))).collect(),
             watch: ExcitationMonitor::default(),
             expected: ExpectedErrors::default(),
@@ -139,7 +139,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
     fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
         let Self { faults, replay, cells, driver, .. } = self;
         let wanted = &replay.signals.wanted;
-        // An output that is not there is no fault of an observer that leaves its row out.
+        // A missing output is no fault for an observer that leaves its row out.
         let is_part = |column: usize, blank| {
             matches!(blank, Blank::Empty) && driver.observer.admits_partial() && replay.signals.of_outputs[column]
         };
@@ -191,7 +191,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             }
         }
         if accepted {
-            // What a part of a sample says of residuals waits for a whole one.
+            // Residuals need a sample with all outputs.
             if self.is_whole() {
                 self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
                 self.whole = t;
@@ -204,7 +204,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         self.write(t)
     }
 
-    /// Gives the observer the outputs at the end of an interval, in which the inputs of the table were held; whether it
+    /// Passes to the observer the outputs at the end of an interval with the inputs of the table; returns true if it
     /// took them.
     fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
         // It begins where the inputs of the interval to come are known.
@@ -212,7 +212,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             return false;
         }
         let layout = &self.replay.layout;
-        // An input holds for an interval: of one that moves on, the mean does. Residuals are of the instant.
+        // An input holds for an interval, so the time is its mean there. Residuals are of the instant.
         layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t - dt / 2.0);
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
         let taken = self.driver.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
@@ -244,12 +244,12 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         true
     }
 
-    /// Whether all outputs of the row are there.
+    /// True if all outputs of the row are there.
     fn is_whole(&self) -> bool {
         self.table[self.replay.layout.y.clone()].iter().all(|output| output.is_finite())
     }
 
-    /// Looks at what the data determine.
+    /// Evaluates excitation and certainty.
     fn look(&mut self) {
         self.watch.look(self.last, &self.driver.observer.component_information());
         let predicted = self.driver.standard_errors();
@@ -262,7 +262,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         writeln!(file, "{}", self.replay.columns.join(",")).map_err(Failure::Unwritten)
     }
 
-    /// Writes the row; what is not known is an empty cell.
+    /// Writes the row, with empty cells for unknown values.
     fn write(&mut self, t: f64) -> Result<(), Failure> {
         let Some(file) = &mut self.estimates else { return Ok(()) };
         let text = &mut self.text;

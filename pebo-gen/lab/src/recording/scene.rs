@@ -1,7 +1,7 @@
-//! A model and the header of a recording, resolved: everything that a replay needs, as programs.
+//! A replay: a model and the header of a recording, resolved to programs.
 //!
-//! In: an accepted derivation with what was written, and the columns. Out: the replay, or every mistake in the sections
-//! `observer` and `recording`. After this, only what is in the rows can go wrong.
+//! In: an accepted derivation with its model, and the columns. Out: the replay, or every mistake in the sections
+//! `observer` and `recording`. After this, only rows can be wrong.
 
 use crate::closed_loop::scenario::{Periods, ScoredEstimate, scored};
 use crate::closed_loop::trace::Trace;
@@ -29,7 +29,7 @@ pub struct Replay {
     pub(super) signals: Signals,
     pub(super) design: Design,
     pub(super) layout: Layout,
-    /// Positions among the recovered states of those that were measured.
+    /// Indices of the measured states among the recovered ones.
     pub(super) measured: Vec<usize>,
     /// The estimates of these.
     pub(super) scored: Vec<ScoredEstimate>,
@@ -43,7 +43,7 @@ pub struct Replay {
     pub(super) span: Span,
 }
 
-/// Names in the order of what they name.
+/// The names of signals, in their order.
 #[derive(Debug)]
 pub(super) struct Names {
     /// The columns that are read.
@@ -64,7 +64,7 @@ impl Replay {
         let request = Request { model, plant, section, who: "the replay" };
         let mut problems = Diagnostics::new();
         request.check(&mut problems);
-        // Every formula with a parameter that has no value would be reported again.
+        // Every formula with a parameter without a value would be reported again.
         problems.propagate()?;
         let replay = replay(&request, derivation, log, &mut problems);
         problems.propagate()?;
@@ -72,7 +72,7 @@ impl Replay {
         replay.ok_or_else(Vec::new)
     }
 
-    /// What there is to say of a recording on which the estimates did not converge: why, and what mends it.
+    /// The advice on a recording on which the estimates did not converge: reason and mend.
     pub fn advise(&self, replayed: &Replayed) -> Option<Diagnostic> {
         advise(&replayed.summary, (&self.design.settings.estimator, Origin::Recorded), self.span)
     }

@@ -1,7 +1,7 @@
-//! From the columns of a log to the signals of the plant.
+//! Resolves the signals of the plant in the columns of a log.
 //!
 //! In: the section `recording`, and the names of the columns. Out: a program from the cells of a row to its time and
-//! signals, or what is missing. A signal without a formula is the column of its own name.
+//! signals, or diagnostics of missing ones. A signal without a formula is the column of its own name.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,19 +16,18 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 
 use super::log::Log;
 
-/// What a row says.
+/// The signals of a row.
 #[derive(Debug)]
 pub(super) struct Signals {
     /// The columns that are read.
     pub(super) wanted: Vec<usize>,
-    /// From their cells to the time if rows say it, to the states that were measured, to outputs and to inputs but for
-    /// the time.
+    /// From their cells to the time if it is recorded, measured states, outputs, and inputs without the time.
     pub(super) program: Program,
-    /// The period as a fraction, if rows do not say their time.
+    /// The period as a fraction, if times are not recorded.
     pub(super) period: Option<(f64, f64)>,
     /// Positions in x of the states that were measured.
     pub(super) measured: Vec<usize>,
-    /// Whether the columns that are read say nothing but outputs.
+    /// For each column that is read, true if only outputs need it.
     pub(super) of_outputs: Vec<bool>,
 }
 
@@ -70,7 +69,7 @@ struct Columns {
     /// A symbol for each.
     symbols: Vec<Symbol>,
     scope: Scope,
-    /// Each name that there is, with the column that has it alone.
+    /// Each name, with its column if that is unique.
     places: BTreeMap<String, Option<usize>>,
 }
 
@@ -115,7 +114,7 @@ struct SignalResolver<'a> {
 }
 
 impl SignalResolver<'_> {
-    /// The meaning of a formula; each of its names that is none is reported.
+    /// The meaning of a formula; unknown names are reported.
     fn formula(&mut self, formula: &Formula) -> Option<Expr> {
         let known: BTreeSet<&str> =
             self.columns.scope.names().chain(self.columns.places.keys().map(String::as_str)).collect();

@@ -1,11 +1,11 @@
-//! From standard deviations to the settings of least squares.
+//! Derives the settings of least squares from standard deviations.
 //!
 //! ```text
 //! P(0) = D_x phi start^2 D_x phi^T     Q = D phi disturbance^2 D phi^T + D_y z' sensors^2 D_y z'^T dt
 //! ```
 //!
-//! of which the diagonals are taken. Measured outputs drive the cascade, so what their sensors err by is noise of the
-//! process too. Of a regression whose unknowns are functions of theta, both are carried over to these functions.
+//! of which the diagonals are taken. Measured outputs drive the cascade, so the noise of their sensors is process noise
+//! too. For a regression whose unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::analysis::{Derivation, RegressionKind};
@@ -26,13 +26,13 @@ use super::start::beginning;
 #[cfg(feature = "simulate")]
 use crate::settings::words::KnownNumbers;
 
-/// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
+/// The default bandwidth of a filter, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
 
-/// Of what is known exactly at the start, this part of the largest variance is left: none would be no covariance.
+/// The least variance at the start, as a share of the largest: zero would be no covariance.
 const CERTAIN: f64 = 1e-12;
 
-/// The settings that known numbers come to.
+/// The settings derived from known numbers.
 pub(super) fn derive(
     model: &Model,
     plant: &Plant,
@@ -53,7 +53,7 @@ pub(super) fn derive(
     let known = Point::of(model, plant);
     let asked = model.observer.known();
     if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
-        // Nobody asked for numbers: then there is no observer either.
+        // Without known numbers in the section there is no observer either, and no complaint.
         if let Some((key, span)) = asked {
             problems.push(no_point(plant, (key, span), lacking));
         }
@@ -78,7 +78,7 @@ pub(super) fn derive(
             let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             drift.splice(0..0, of_rows.iter().copied());
             let of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
-            // The first sample is where the outputs begin.
+            // The outputs begin at the first sample.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
             chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
@@ -135,8 +135,8 @@ pub(super) fn derive(
     })
 }
 
-/// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
-/// the left inverse.
+/// True if the noise of a sample is not only in its row of the regression, but in the flow of the extension or in the
+/// left inverse.
 #[cfg(feature = "simulate")]
 fn is_elsewhere(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: ObserverKind) -> bool {
     let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
@@ -148,11 +148,11 @@ fn is_elsewhere(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kin
 
 /// Variances of the coordinates.
 struct Coordinates {
-    /// At the start.
+    /// The variances at the start.
     covariance: Vec<f64>,
-    /// Of what they drift by in a second.
+    /// The variances of their drift in a second.
     drift: Vec<f64>,
-    /// The same with what the sensors add, where outputs drive the cascade.
+    /// The same with the noise of the sensors, where outputs drive the cascade.
     noise: Vec<f64>,
 }
 
@@ -179,7 +179,7 @@ impl Coordinates {
     }
 }
 
-/// Variances with what the noise of samples adds to rates, a sample for a period.
+/// Variances with the contribution of the samples' noise to rates, held for a period.
 fn with_sensor_noise(
     rates: &Slopes,
     point: &Point,
@@ -191,15 +191,15 @@ fn with_sensor_noise(
     Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
 }
 
-/// What the section says beside its standard deviations.
+/// The settings of the section beside its standard deviations.
 fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
     let states = derivation.left_inverse.result.as_ref()?.x.len();
     let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
     Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
 }
 
-/// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
-/// outputs: then from those that are expected.
+/// The indices of the outputs whose rates are used, if they alone are under the derivative and states are recovered
+/// from outputs: then from the expected ones.
 fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     let regression = derivation.regression.result.as_ref()?;
     let inverse = derivation.left_inverse.result.as_ref()?;
@@ -208,8 +208,8 @@ fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
 }
 
-/// The rates through a filter. The rate of white samples errs by `alpha s` there at once, and no two time constants are
-/// independent: an intensity that is not too small for any time, over which least squares have their covariances.
+/// The rates through a filter. The filtered rate of white samples has the standard deviation `alpha s`, correlated over
+/// a time constant: the intensity is not too small over any time, and with it least squares have their covariances.
 fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (Operator<f64>, Vec<f64>, Vec<f64>) {
     let alpha = BANDWIDTH / period;
     let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
@@ -217,7 +217,7 @@ fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (O
     (Operator::Filter(alpha), over(covariance), over(noise))
 }
 
-/// What the regression admits and the section asks for.
+/// The kind of observer that the regression admits and the section asks for.
 fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<ObserverKind> {
     let regression = derivation.regression.result.as_ref()?;
     let is_static = regression.kind == RegressionKind::Static;
@@ -278,7 +278,7 @@ fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
         .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
 }
 
-/// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
+/// The point, completed with numbers for symbols that slopes do not depend on, and for z, extension and unknowns.
 fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
     let signals = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).chain(plant.u.clone());
     let all: Vec<Symbol> = signals.chain(plant.w.clone()).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
@@ -296,17 +296,17 @@ fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &
     Some(point.with(&formulas.eta, &eta))
 }
 
-/// The formulas whose slopes are asked for.
+/// The formulas whose slopes are needed.
 struct Formulas {
     /// phi, by x and y.
     phi: Slopes,
     /// The rates of z, by y.
     flow: Slopes,
-    /// What stands under the derivative, by y.
+    /// The primitive under the derivative, by y.
     held: Slopes,
-    /// Its rate, or what a static regression says to be zero, by y.
+    /// Its rate, or the residual of a static regression, by y.
     rates: Slopes,
-    /// How these slopes change with the unknowns, of each row.
+    /// The derivatives of these slopes by the unknowns, for each row.
     curvatures: Vec<Expr>,
     /// The unknowns, by theta.
     unknowns: Slopes,
@@ -315,7 +315,7 @@ struct Formulas {
 }
 
 impl Formulas {
-    /// Of the whole regression where all equations serve, else of those with an unknown.
+    /// The formulas of the whole regression where all equations serve, else of those with an unknown.
     fn of(plant: &Plant, derivation: &Derivation, all_serve: bool) -> Option<Self> {
         let arena = &plant.arena;
         let cascade = derivation.cascade.result.as_ref()?;
@@ -369,7 +369,7 @@ impl Formulas {
         })
     }
 
-    /// What must have numbers: all slopes, and phi itself, at which most of them are taken.
+    /// The formulas that must have numbers: all slopes, and phi itself, at which most of them are taken.
     fn needed(&self, plant: &Plant) -> Vec<Expr> {
         let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.curvatures];
         let mut needed: Vec<Expr> = slopes.into_iter().flatten().copied().collect();
@@ -397,7 +397,7 @@ impl Formulas {
             if variance > 0.0 {
                 return variance.sqrt();
             }
-            // Where the plant is, its outputs say nothing: away from there they do.
+            // A row without slope at the operating point has one away from it.
             let curvature = |(place, curvature): (usize, &f64)| {
                 let (sensor, unknown) = (place / self.eta.len(), place % self.eta.len());
                 let spread = covariance.get(unknown).copied().unwrap_or(1.0);

@@ -1,4 +1,4 @@
-//! Settings beside what they were derived from.
+//! Settings with the known numbers behind them.
 
 use pebo_cas::Rational;
 use pebo_design::plant::Settings;
@@ -8,15 +8,15 @@ use super::prediction::Prediction;
 #[cfg(feature = "simulate")]
 use crate::settings::words::KnownNumbers;
 
-/// Settings, and what they were derived from where they were.
+/// Settings, with the known numbers behind them where they were derived.
 #[derive(Clone, Debug)]
 pub struct DerivedSettings {
-    /// With which an observer can be built.
+    /// The settings that an observer is built with.
     pub settings: Settings<Rational>,
-    /// What they were derived from; none where the author chose them.
+    /// The numbers that they were derived from; none where the author chose the settings.
     #[cfg(feature = "simulate")]
     pub known: Option<KnownNumbers>,
-    /// How the errors of the estimates are predicted.
+    /// The prediction of the estimates' errors.
     #[cfg(feature = "simulate")]
     pub(crate) prediction: Prediction,
 }

@@ -1,14 +1,14 @@
-//! The numbers of an observer, from what is known of its sensors, its start and its disturbances.
+//! The settings of an observer, from the known numbers of its sensors, its start and its disturbances.
 //!
 //! ```text
 //! sensors, start, disturbance -> operating point -> slopes of phi, h and the regression -> covariance, process noise
 //! ```
 //!
-//! In: a model with its proved derivation. Out: settings with which the runtime's observer is built, the same for emitted
-//! code and for a run, and the numbers that they were derived from, to be shown. Where the author wrote gains these are the
-//! settings, and nothing is derived.
+//! In: a model with its proved derivation. Out: the settings of the runtime's observer, the same for emitted code and
+//! for a run, and the numbers behind them, for reports. Where the author wrote gains these are the settings, and
+//! nothing is derived.
 //!
-//! The observer of known numbers is least squares on samples that are weighed by their sensors: in the output form where the
+//! The observer of known numbers is least squares on samples weighted by their sensors: in the output form where the
 //! regression is of rates, re-based at every sample, which makes it a Kalman filter of the transformed plant. Where the
 //! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
 
@@ -48,8 +48,8 @@ pub(crate) use prediction::Prediction;
 pub use words::{KnownNumbers, Numbers, Value};
 
 impl DerivedSettings {
-    /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
-    /// it says is reported. `period` is that of the samples in seconds, where the model does not say it.
+    /// The settings of a model's observer; none where the model is incomplete. Mistakes in it are reported. `period` is
+    /// that of the samples in seconds, where the model has none.
     pub fn of(
         model: &Model,
         plant: &Plant,

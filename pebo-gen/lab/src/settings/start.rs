@@ -1,8 +1,8 @@
-//! Where the extension starts if nobody says so.
+//! Chooses the start of the extension by default.
 //!
-//! In: the left inverse, and where the plant starts as far as that is known. Out: numbers for z of which the left inverse has
-//! a value: zeros if it has one there, else phi of a state that the assumptions admit. A flux of 0 has no position, and what
-//! is divided by a component of phi none either.
+//! In: the left inverse, and the plant's start as far as it is known. Out: numbers for z where the left inverse has a
+//! value: zeros if it has one there, else phi of a state that the assumptions admit. A flux of 0 has no position, and
+//! neither has a quotient by a zero component of phi.
 
 use pebo_cas::{Expr, Rational, Relation, Symbol};
 use pebo_design::analysis::Derivation;
@@ -12,23 +12,22 @@ use pebo_design::plant::Plant;
 use super::digits::rounded;
 use super::point::Point;
 
-/// Parts of the state that the plant is known to start with which the extension may start from, the first that will do: not
-/// the state itself before all others, which the observer is to find.
+/// Shares of the plant's start to try for the extension, in this order: the start itself last, as the observer is to
+/// find it.
 const SHARES: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
 
-/// Of so many states, all signs are tried at a distance of 1 from zero.
+/// The most states whose signs are all tried at a distance of 1 from zero.
 const MOST_SIGNS: usize = 6;
 
-/// What stands for a signal or parameter that is nowhere known.
+/// The number for an unknown signal or parameter.
 const ANY: f64 = 1.0;
 
-/// The extension at the start of a model that does not say it; none where nothing was found of which the left inverse has a
-/// value.
+/// The default extension at the start; none where no point was found at which the left inverse has a value.
 pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     beginning(&Point::of(model, plant), plant, derivation)
 }
 
-/// The same where the plant is known to start at a point.
+/// The same for a plant that starts at a known point.
 pub(super) fn beginning(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
     let left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();

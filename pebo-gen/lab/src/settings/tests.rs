@@ -1,4 +1,4 @@
-//! Known numbers in, settings out; and what does not go together.
+//! Settings derived from known numbers, and contradictions.
 
 use pebo_cas::Rational;
 use pebo_design::analysis::Derivation;
@@ -65,8 +65,8 @@ fn deviations_become_covariances_through_the_slopes_of_phi() {
     assert!(close(&sensors, &[0.1, 0.2]), "{sensors:?}");
     // The outputs' first samples, then (2*5)^2 and 3^2.
     assert!(close(&start, &[0.01, 0.04, 100.0, 9.0]), "{start:?}");
-    // v2' is free of outputs, v4' is not; 2*i1 drifts by 2, and by what the sample of v2 errs by: 2*(1 - d)*0.1/L1 = 10 over a
-    // step; i3 by d*0.1/L3 = 5 and 0.2/L3 = 20.
+    // v2' is free of outputs, v4' is not; 2*i1 drifts by 2, and by what the sample of v2 errs by: 2*(1 - d)*0.1/L1 = 10
+    // over a step; i3 by d*0.1/L3 = 5 and 0.2/L3 = 20.
     let of_v4 = (0.0447_f64 / 22.9e-6 * 0.2).powi(2) * 1e-5;
     let expected = [0.0, of_v4, 4.0 + 100.0 * 1e-5, (25.0 + 400.0) * 1e-5];
     assert!(close(&noise, &expected), "{noise:?} {expected:?}");
@@ -84,7 +84,7 @@ fn covariances_of_z_may_be_written() {
 }
 
 #[test]
-fn where_nobody_says_a_number_there_are_settings_if_the_start_is_known() {
+fn settings_need_no_known_numbers_if_the_start_is_known() {
     let (settings, problems) = derived(&format!("{CUK}{SCENARIO}"));
     assert!(problems.is_empty() && settings.is_some_and(|settings| settings.output), "{problems:?}");
     // Nothing is known of the step: there is no observer, and no complaint.
@@ -92,7 +92,7 @@ fn where_nobody_says_a_number_there_are_settings_if_the_start_is_known() {
 }
 
 #[test]
-fn what_is_known_may_depend_on_where_the_plant_operates() {
+fn known_numbers_may_depend_on_the_operating_point() {
     let (settings, problems) = derived(&format!("{CUK}{KNOWN}"));
     assert!(settings.is_none());
     assert!(problems[0].message.contains("`d` is not known"), "{problems:?}");
@@ -173,7 +173,7 @@ fn an_extension_starts_where_the_left_inverse_has_a_value() {
     assert_eq!(start(&format!("{gains}{scenario}")), [1.5, 67.5]);
     // The same for known numbers, in whose extension the output stands first.
     assert_eq!(start(scenario), [0.0, 1.5, 67.5]);
-    // Where nothing is said, a state of the domain at a distance of 1; what the author writes is what it is.
+    // Without a start, a state of the domain at a distance of 1; the author's own start is kept.
     assert_eq!(start(gains), [1.0, 2.0]);
     assert_eq!(start("observer: {gain: 1, filter: 1, extension: [0, 0]}\n"), [0.0, 0.0]);
     // Half of it is not in this domain, twice is: U = 6.

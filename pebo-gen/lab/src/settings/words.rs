@@ -1,4 +1,4 @@
-//! What an observer's numbers were derived from, and what they came to, in words.
+//! The known numbers behind an observer's settings, in words.
 
 use serde::Serialize;
 
@@ -9,23 +9,23 @@ use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::prediction::Prediction;
 
-/// What is known of sensors, start and disturbances, with what was derived of it.
+/// The known numbers of sensors, start and disturbances, with the derived ones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KnownNumbers {
-    /// What the observer is, in words.
+    /// The kind of the observer, in words.
     pub observer: String,
     /// Each kind of number with its values.
     pub numbers: Vec<Numbers>,
-    /// Why no standard errors are predicted; none where they are.
+    /// The reason why no standard errors are predicted; none where they are.
     pub unpredicted: Option<String>,
 }
 
 /// Numbers of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Numbers {
-    /// What they are.
+    /// Their kind, in words.
     pub what: String,
-    /// Whether nobody wrote them.
+    /// True if they are assumed, not written by the author.
     pub assumed: bool,
     /// Names and values, with units.
     pub values: Vec<Value>,
@@ -34,11 +34,11 @@ pub struct Numbers {
 /// The value of a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
-    /// Of what.
+    /// The name.
     pub name: String,
-    /// How much.
+    /// The value.
     pub value: f64,
-    /// In what unit, if the model has one.
+    /// The unit, if the model has one.
     pub unit: Option<String>,
 }
 
@@ -97,7 +97,7 @@ impl KnownNumbers {
         }
     }
 
-    /// The same with the reason for which nothing is predicted, if there is one.
+    /// The same with the reason why nothing is predicted, if there is one.
     pub(super) fn predicted(self, prediction: &Prediction) -> Self {
         let unpredicted = match prediction {
             Prediction::None(reason) => Some((*reason).to_owned()),

@@ -47,10 +47,10 @@ fn each_converges() {
     ];
     for section in sections {
         let [i1, v4] = remains(section);
-        // The 1 % that settling is told by.
+        // The 1 % of settling.
         assert!(i1 < 0.01 && v4 < 0.01, "{section}: {i1} {v4}");
     }
-    // The unknown of the voltage is 7.5: more than half of that is beyond this bound, and stays.
+    // The unknown of the voltage is 7.5: more than half of that is beyond this bound, and remains as error.
     let [_, v4] = remains("estimator: least-squares, covariance: [1e6, 1e10], bounds: {upper: [50, 3]}, filter: 1e3");
     assert!(v4 > 0.5, "{v4}");
 }

@@ -8,7 +8,7 @@ fn figure(scenario: &Scenario) -> String {
     draw(&scenario.run().unwrap(), scenario)
 }
 
-/// Whether every element is closed in its order, every attribute quoted, every entity known.
+/// Checks that every element is closed in its order, every attribute quoted, every entity known.
 fn assert_well_formed(svg: &str) {
     let mut open = Vec::new();
     let mut rest = svg;

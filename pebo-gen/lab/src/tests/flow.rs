@@ -73,7 +73,7 @@ fn a_signal_that_moves_is_followed_between_samples() {
 }
 
 #[test]
-fn what_cannot_be_integrated_ends() {
+fn an_impossible_integration_ends() {
     // Escapes to infinity at t = 1.
     assert!(integrate(|arena, a, _| arena.mul(a, a), "0", 20).is_err());
     // Leaves the domain of the root.
@@ -84,7 +84,7 @@ fn what_cannot_be_integrated_ends() {
 }
 
 #[test]
-fn what_dies_out_in_a_nanosecond_costs_a_few_steps() {
+fn a_transient_of_a_nanosecond_costs_a_few_steps() {
     // Leads to cos(20 t) with a time constant of 1 ns; the explicit method would need 3e7 steps for each 0.1 s.
     let fast = |arena: &Arena, a, s| arena.mul(arena.number(-1_000_000_000), arena.sub(a, s));
     let states = integrate(fast, "{0: cos(20*t)}", 10).unwrap();

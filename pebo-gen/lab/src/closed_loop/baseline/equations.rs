@@ -1,4 +1,4 @@
-//! Baselines that are given by their equations: one ODE together with the plant.
+//! Baselines given by equations: one ODE combined with the plant.
 
 use pebo_cas::Expr;
 use pebo_design::model::{Entry, Equations, Formula};

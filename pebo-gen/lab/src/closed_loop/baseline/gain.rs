@@ -1,7 +1,7 @@
-//! How a baseline corrects its prediction: Kalman's gain and Luenberger's.
+//! The gains that correct a baseline's prediction: Kalman's and Luenberger's.
 //!
-//! In: what a step did, and the derivatives of the outputs. Out: the correction of the states. Sizes are padded with zeros,
-//! in which neither moves anything.
+//! In: the transition of a step, and the derivatives of the outputs. Out: the correction of the states. Sizes are
+//! padded with zeros, which neither changes.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
@@ -16,7 +16,7 @@ pub(super) struct Sample<const N: usize> {
     pub(super) slopes: SMatrix<f64, N, N>,
 }
 
-/// A rule by which predictions are corrected.
+/// A rule that corrects predictions.
 #[derive(Clone, Debug)]
 pub(super) enum Gain<const N: usize> {
     Kalman(Kalman<N>),
@@ -46,7 +46,7 @@ impl<const N: usize> Gain<N> {
 pub(super) struct Kalman<const N: usize> {
     /// Of the states' errors.
     pub(super) covariance: SMatrix<f64, N, N>,
-    /// By how much a variance grows in a second.
+    /// The growth of each variance in a second.
     pub(super) intensity: SVector<f64, N>,
     /// The variances of the outputs' samples.
     pub(super) sensors: Vec<f64>,
@@ -87,7 +87,7 @@ pub(super) struct Luenberger<const N: usize> {
     pub(super) poles: Vec<f64>,
     /// The number of outputs.
     pub(super) outputs: usize,
-    /// The last transition and outputs with the gain that belongs to them: where the inputs rest it is worked out once.
+    /// The last transition and output slopes with their gain: with constant inputs it is computed once.
     pub(super) known: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
 }
 
@@ -102,12 +102,13 @@ impl<const N: usize> Luenberger<N> {
         Some(gain * sample.innovation)
     }
 
-    /// The gain `L` with which `transition - L output_slopes` has the poles.
+    /// The gain `L` for which `A - L C` has the poles, `A` the transition and `C` the output slopes.
     ///
-    /// Method: rows `x_i (transition - f_i) = g_i output_slopes` with any `g_i` make `X transition - F X = G output_slopes`, so that with
-    /// `L = X^-1 G` the matrix `transition - L output_slopes = X^-1 F X` has the poles `F`. Source: Luenberger, *Observing the state of a
-    /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that outputs of
-    /// unequal units are not mixed: `X` has an inverse where each output shows the states that its poles are for.
+    /// Method: rows `x_i (A - f_i) = g_i C` with any `g_i` make `X A - F X = G C`, so that with `L = X^-1 G` the matrix
+    /// `A - L C = X^-1 F X` has the poles `F`. Source: Luenberger, *Observing the state of a
+    /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that
+    /// outputs of unequal units are not mixed: `X` has an inverse where the states of its poles are observable from
+    /// each output.
     fn gain(&self, transition: &SMatrix<f64, N, N>, output_slopes: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
         let (mut rows, mut mixing) = (SMatrix::<f64, N, N>::identity(), SMatrix::<f64, N, N>::zeros());
         for (row, pole) in self.poles.iter().enumerate() {

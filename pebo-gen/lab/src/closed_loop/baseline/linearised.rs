@@ -1,7 +1,7 @@
-//! The plant as its model says it is, linearised: what observers by name are built of.
+//! The linearised plant of the model, for baselines by name.
 //!
-//! In: the plant. Out: programs of the rates and of the outputs, each with its derivatives by the states. The states are
-//! those of x and the outputs that have rates; outputs that are given by their value are measured functions of them.
+//! In: the plant. Out: programs of the rates and of the outputs, each with its derivatives by the states. The states
+//! are those of x and the outputs that have rates; outputs given by value are measured functions of them.
 
 use std::collections::BTreeSet;
 
@@ -24,10 +24,10 @@ pub(super) struct LinearisedPlant {
     pub(super) states: Vec<Symbol>,
     /// The number of outputs.
     pub(super) outputs: usize,
-    /// For each output the place of the state that it is, if it has a rate.
+    /// The index of each output among the states, if it has a rate.
     pub(super) places: Vec<Option<usize>>,
     inputs: usize,
-    /// Whether no derivative depends on a state, which is proved.
+    /// True if no derivative depends on a state, which is proved.
     pub(super) is_affine: bool,
     /// The rates, then their derivatives by rows.
     rates: Program,
@@ -36,7 +36,7 @@ pub(super) struct LinearisedPlant {
 }
 
 impl LinearisedPlant {
-    /// The programs; `span` is where they are asked for.
+    /// The programs; `span` is that of the baseline.
     pub(super) fn resolve(names: &Names, (name, span): (&str, Span), problems: &mut Diagnostics) -> Option<Self> {
         let (plant, arena) = (names.plant, &names.plant.arena);
         let model = Truth::of_model(names)?;
@@ -106,14 +106,14 @@ pub(super) struct PaddedPlant<const N: usize> {
     found: Vec<f64>,
 }
 
-/// What a step does to states and their errors.
+/// The transition of states and their errors over a step.
 #[derive(Clone, Debug)]
 pub(super) struct Transition<const N: usize> {
     /// The states at its end.
     pub(super) state: SVector<f64, N>,
     /// The derivative of the states in the middle of the step by those at its start.
     pub(super) half: SMatrix<f64, N, N>,
-    /// Of those at its end.
+    /// The derivative of the states at its end by those at its start.
     pub(super) whole: SMatrix<f64, N, N>,
 }
 
@@ -131,9 +131,9 @@ impl<const N: usize> PaddedPlant<N> {
         }
     }
 
-    /// Moves the states on by `dt` seconds with the inputs held: exact for an affine plant, and of second order for others
-    /// (the exponential Euler method of Rosenbrock's kind: Hochbruck and Ostermann, *Exponential integrators*, Acta
-    /// Numerica, 2010).
+    /// Advances the states by `dt` seconds with the inputs held: exact for an affine plant, and of second order for
+    /// others (the exponential Euler method of Rosenbrock's kind: Hochbruck and Ostermann, *Exponential integrators*,
+    /// Acta Numerica, 2010).
     ///
     /// # Errors
     /// A step that is too long for an exponential.

@@ -1,8 +1,8 @@
-//! Baseline observers: the ones that the model's own is compared with.
+//! Baseline observers, with which the model's own is compared.
 //!
-//! In: what the model file says of them. Out: of one that is given by equations, rates, starts and estimates as
-//! expressions of the layout's symbols; of one that is given by its name, a [`NamedBaseline`] observer that is fed the samples
-//! which the model's own gets. Either sees what an observer sees: outputs, inputs, signals, its own states.
+//! In: the entries of the model file. Out: for one given by equations, rates, starts and estimates as expressions of
+//! the layout's symbols; for one given by name, a [`NamedBaseline`] that takes the samples of the model's own observer.
+//! Either uses what an observer may: outputs, inputs, signals, its own states.
 //!
 //! ```text
 //! equations -> expressions                 kalman, ekf, luenberger -> linearised plant -> gain -> estimate
@@ -32,14 +32,14 @@ pub(crate) struct ResolvedBaseline {
     pub(crate) rates: Vec<Expr>,
     /// Its states at the start, in outputs.
     pub(crate) start: Vec<Expr>,
-    /// Its estimates, in its states, outputs and inputs; of a sampled one, those that it writes.
+    /// Its estimates, in its states, outputs and inputs; for one by name, the symbols that it writes.
     pub(crate) estimates: Estimates,
-    /// What writes them, if it has no equations.
+    /// The observer that writes them, if it has no equations.
     pub(crate) sampled: Option<NamedBaseline>,
 }
 
 impl ResolvedBaseline {
-    /// Resolves a baseline; what is wrong with it is reported.
+    /// Resolves a baseline; mistakes are reported.
     pub(crate) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
         let name = entry.name.value.as_str();
         let (ResolvedEquations { rates, start, estimates }, sampled) = match &entry.value {

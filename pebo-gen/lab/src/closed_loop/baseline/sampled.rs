@@ -1,7 +1,7 @@
-//! Baselines that are given by their name: observers of all states, fed sample by sample.
+//! Baselines given by name: observers of all states that take samples.
 //!
-//! In: the plant's model and the settings of the baseline. Out: a [`NamedBaseline`] description, and of it a [`Follower`] that takes
-//! what the model's own observer takes, and writes an estimate of each unmeasured state.
+//! In: the plant's model and the settings of the baseline. Out: a [`NamedBaseline`], which builds a [`Follower`] that
+//! takes the samples of the model's own observer and writes an estimate of each unmeasured state.
 
 use std::fmt;
 
@@ -24,7 +24,7 @@ use super::linearised::{LinearisedPlant, PaddedPlant};
 #[derive(Debug)]
 pub(crate) struct NamedBaseline {
     plant: LinearisedPlant,
-    /// From the outputs to the estimates of x at the start.
+    /// The estimates of x at the start, from the outputs.
     start: Program,
     rule: Rule,
 }
@@ -38,7 +38,7 @@ enum Rule {
 }
 
 impl NamedBaseline {
-    /// Resolves a baseline that has no equations; what is wrong with it is reported.
+    /// Resolves a baseline that has no equations; mistakes are reported.
     pub(super) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
         let place = (entry.name.value.as_str(), entry.name.span);
         let plant = LinearisedPlant::resolve(names, place, problems)?;
@@ -57,7 +57,7 @@ impl NamedBaseline {
                 None => arena.zero(),
             });
         }
-        // What the outputs show is what is passed.
+        // The outputs are passed as arguments.
         let measured =
             names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
         let measured = measured.collect();
@@ -77,7 +77,7 @@ impl NamedBaseline {
     }
 }
 
-/// The number that an entry has for a name.
+/// The number of a name among the entries.
 fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
     entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
 }
@@ -136,7 +136,7 @@ fn luenberger(
     None
 }
 
-/// An observer of some size at work.
+/// A running observer of any size.
 pub(crate) trait Follower: fmt::Debug {
     /// Takes the inputs during a step, and the outputs at its end if their sample arrived.
     fn sample(&mut self, y: Option<&[f64]>, u: &[f64]);
@@ -203,7 +203,7 @@ impl<const N: usize> Follower for PaddedFollower<N> {
         let mut sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
         for output in (0..y.len()).filter(|output| y[*output].is_nan()) {
             sample.innovation[output] = 0.0;
-            // Of an output that is not there a covariance learns nothing; poles are those of all outputs.
+            // A covariance learns nothing from a missing output; poles are those of all outputs.
             if matches!(self.gain, Gain::Kalman(_)) {
                 sample.slopes.row_mut(output).fill(0.0);
             }

@@ -1,7 +1,7 @@
-//! Plants whose parts are about as fast as they are sampled, between two instants.
+//! The explicit method, for plants about as fast as their sampling.
 //!
-//! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library. The first step tried is the whole
-//! interval: a loop that is sampled well needs one step a sample.
+//! Method: Dormand and Prince's explicit Runge-Kutta pair of order 5(4), from a library. The first step tried is the
+//! whole interval: a well-sampled loop needs one step a sample.
 
 use std::fmt;
 
@@ -10,8 +10,7 @@ use differential_equations::ode::OrdinaryNumericalMethod;
 
 use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solver, Standstill, StepCallback};
 
-/// The method, made once for the run: its start sets all that a step changes but the count of its steps, which nothing
-/// depends on.
+/// The method, made once for the run: its start resets everything but the count of its steps, which nothing depends on.
 pub(crate) struct ExplicitMethod<const N: usize>(DormandPrinceOf<N>);
 
 type DormandPrinceOf<const N: usize> = ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; N], 5, 7, 7>;
@@ -68,7 +67,7 @@ impl<const N: usize> Solver for ExplicitMethod<N> {
                 return Err(standstill(method, steps));
             }
             steps += 1;
-            // A step that was refused has moved nothing.
+            // A refused step has changed nothing.
             if method.t() > before
                 && let Some(watch) = &mut watch
                 && watch(method.t(), &method.y()[..state.len()])
