@@ -13,7 +13,7 @@ use pebo_design::search::{self, SearchVerdict};
 #[cfg(feature = "yaml")]
 use pebo_design::source::Source;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
-use pebo_lab::settings::Tuned;
+use pebo_lab::settings::DerivedSettings;
 
 /// A model with its plant and its derivation.
 #[derive(Debug)]
@@ -124,7 +124,7 @@ impl Derived {
     /// reports missing ones.
     fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
         let mut problems = Diagnostics::default();
-        let tuned = Tuned::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
+        let tuned = DerivedSettings::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
         let settings = tuned.map(|tuned| tuned.settings);
         (settings.filter(|_| !problems.has_errors()), problems.into_vec())
     }

@@ -3,6 +3,11 @@
 //! The public face of the crate `pebo-lab`.
 
 pub use pebo_lab::{
-    Certainty, Ensemble, Estimate, Excitation, Failure, Faults, Known, Numbers, Overrides, Quantiles, Rated, SETTLED,
-    Scenario, Score, Spread, Summary, Trace, Value, figure, recording as replay,
+    Certainty, Ensemble, Estimate, EstimateScore, Excitation, Failure, Faults, KnownNumbers, Numbers, Overrides,
+    Quantiles, SETTLED, Scenario, Score, Spread, Summary, Trace, Value, recording as replay,
 };
+
+/// The figure of a run, as SVG.
+pub mod figure {
+    pub use pebo_lab::draw;
+}

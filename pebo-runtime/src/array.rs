@@ -1,4 +1,4 @@
-//! Arrays of any length for serde, which knows those of its own choice only.
+//! Serialises arrays of any length; serde itself has a few fixed lengths only.
 
 use core::fmt;
 use core::marker::PhantomData;

@@ -1,10 +1,10 @@
-//! Why the observer refused: a fact, small enough to be copied into a log or a status register.
+//! The reason of a refusal: a fact, small enough to be copied into a log or a status register.
 
 use core::fmt;
 
 use crate::Real;
 
-/// The reason for which a call was refused. What was called is then exactly as it was before.
+/// The reason for which a call was refused. Its receiver is then exactly as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -64,7 +64,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Accepts parameters of which all these conditions hold.
+    /// Accepts parameters if all these conditions hold.
     ///
     /// # Errors
     /// [`Fault::Parameter`] with the place of the first that does not.
@@ -72,7 +72,7 @@ impl Fault {
         conditions.iter().position(|holds| !holds).map_or(Ok(()), |index| Err(Self::Parameter { index }))
     }
 
-    /// Accepts what a model computed from its parameters if all of it is finite.
+    /// Accepts the constants that a model computed from its parameters if all are finite.
     ///
     /// # Errors
     /// [`Fault::Constant`] with the place of the first that is not.

@@ -1,4 +1,4 @@
-//! The version of what emitted code sees of this library.
+//! The version of the interface between emitted code and this library.
 
 /// Counts the changes of the library that emitted code has to follow.
 pub const INTERFACE: u32 = 2;

@@ -1,4 +1,4 @@
-//! Runtime of parameter-estimation-based observers (PEBO): what emitted code links against.
+//! Runtime of parameter-estimation-based observers (PEBO), the library of emitted code.
 //!
 //! For a plant `x' = f_x(x, y, u)`, `y' = f_y(x, y, u)` with unmeasured `x`, and a transform `z = phi(x, y)` that
 //! turns it into a cascade, the observer is
@@ -13,9 +13,10 @@
 //! - [`Filter`]: `alpha / (p + alpha)`, advanced exactly over a step; or [`WindowedRegression`], the integral form;
 //! - [`Estimator`]: [`Gradient`], [`LeastSquares`], DREM and others of [`estimator`], or one of your own;
 //! - [`Monitor`]: whether the data so far determine the unknown, and how well;
-//! - [`Observer::standard_error`], [`Observer::innovation`] and [`Gate`]: how far an estimate and a sample can be trusted;
+//! - [`Observer::standard_error`], [`Observer::innovation`] and [`Gate`]: how far an estimate and a sample can be
+//!   trusted;
 //! - [`OutputForm`] and [`SampledRegression`]: the outputs themselves as the regressand, nothing differentiated;
-//! - [`Limits`], [`Gap`], [`Drift`], [`State`]: what samples may be, intervals without one, forms without drift, saving;
+//! - [`Limits`], [`Gap`], [`Drift`], [`State`]: ranges of samples, intervals without one, forms without drift, saving;
 //! - [`Within`]: bounds of the state;
 //! - [`Observer`]: one [`step`](Observer::step) a sample, which never panics and answers a bad sample with a [`Fault`].
 //!
@@ -24,16 +25,17 @@
 //! Features: `serde` writes and reads states and faults, `defmt` prints faults over a debug probe.
 //!
 //! Vectors and matrices are those of [`nalgebra`], which is part of this interface and exported again: write
-//! `pebo_runtime::nalgebra`, and the versions agree. A release with another major or zero-major version of it is a breaking
-//! release of this crate. Nothing else of it is in the interface: not its solvers, which may panic or allocate.
+//! `pebo_runtime::nalgebra`, and the versions agree. A release with another major or zero-major version of it is a
+//! breaking release of this crate. Nothing else of it is in the interface: not its solvers, which may panic or
+//! allocate.
 //!
 //! Source of the method: Ortega, Bobtsov, Pyrkin, Aranovskiy, *A parameter estimation approach to state observation of
 //! nonlinear systems*, Systems & Control Letters, 2015, named "the paper" throughout.
 //!
 //! # Example
 //!
-//! A mass whose position `y` is measured and whose speed `x` is not: `x' = u`, `y' = x`. With `phi = x` the extension is
-//! `chi' = u` and the regression `y' = chi + theta`.
+//! A mass whose position `y` is measured and whose speed `x` is not: `x' = u`, `y' = x`. With `phi = x` the extension
+//! is `chi' = u` and the regression `y' = chi + theta`.
 //!
 //! ```
 //! use pebo_runtime::nalgebra::{SMatrix, SVector};
@@ -127,7 +129,7 @@ pub use regression::{
 pub use samples::{Gap, Gate, Limits};
 pub use within::Within;
 
-/// The package's front page, of which the example is a test.
+/// The package's front page, whose example is a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 mod front_page {}

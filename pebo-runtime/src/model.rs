@@ -1,4 +1,4 @@
-//! The functions of one plant: what emitted code provides and an [`Observer`](crate::Observer) runs.
+//! The functions of one plant, provided by emitted code and run by an [`Observer`](crate::Observer).
 
 use core::fmt::Debug;
 
@@ -11,9 +11,8 @@ use crate::{Extension, Flow, Real, Sides};
 pub enum Regression {
     /// `d/dt [primitive_0 + primitive_1 eta] = phi_0 + phi_1 eta`.
     ///
-    /// With `primitive_0 = y` and `primitive_1 = 0` this is `y' = phi_0 + phi_1 eta` (the paper, Section 3,
-    /// remark R2); a
-    /// `primitive_1` admits an unknown that multiplies a derivative.
+    /// With `primitive_0 = y` and `primitive_1 = 0` this is `y' = phi_0 + phi_1 eta` (the paper, Section 3, remark R2);
+    /// a `primitive_1` admits an unknown that multiplies a derivative.
     Dynamic,
     /// `phi_0 = phi_1 eta` at every instant (the paper, Section 5.2: `Y = S^T eta`).
     Static,
@@ -32,7 +31,7 @@ pub enum Regression {
 ///
 /// | call | values | when |
 /// |---|---|---|
-/// | [`terms`](Self::terms) | what the others need of the output | once for each sample |
+/// | [`terms`](Self::terms) | the terms of the output that the others need | once for each sample |
 /// | [`flow`](Self::flow) | `h`, `lambda` | at both ends of an interval |
 /// | [`regression`](Self::regression) | `phi_0`, `phi_1` | at both ends |
 /// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
@@ -43,7 +42,7 @@ pub enum Regression {
 pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize> {
     /// `f32` or `f64`.
     type Scalar: Real;
-    /// What is integrated: [`Integrator`](crate::Integrator) (`z = chi + theta`) or
+    /// The dynamic extension: [`Integrator`](crate::Integrator) (`z = chi + theta`) or
     /// [`Fundamental`](crate::Fundamental) (`z = xi + Psi theta`).
     type Extension: Extension<Self::Scalar, NZ>;
     /// The recovered states as an estimate gives them: `SVector<Self::Scalar, NX>`, or a structure that names them.
@@ -52,12 +51,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     type Y: From<SVector<Self::Scalar, NY>> + Into<SVector<Self::Scalar, NY>>;
     /// The inputs as a sample gives them, likewise.
     type U: From<SVector<Self::Scalar, NU>> + Into<SVector<Self::Scalar, NU>>;
-    /// What the functions need of an output: `SVector<Self::Scalar, NY>`, or more that is computed from it once.
+    /// The terms of an output that the functions share: `SVector<Self::Scalar, NY>`, or more, computed from it once.
     type Terms: Copy + Debug;
-    /// Which equation `phi_0` and `phi_1` are the sides of.
+    /// The equation that has `phi_0` and `phi_1` for its sides.
     const REGRESSION: Regression;
 
-    /// What the functions need of the output `y`.
+    /// The terms of the output `y` that the functions share.
     fn terms(&self, y: &SVector<Self::Scalar, NY>) -> Self::Terms;
 
     /// `h` and `Lambda` of the cascade `z' = Lambda z + h(y, u)`; `Lambda` is zero unless the extension is
@@ -73,7 +72,7 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         u: &SVector<Self::Scalar, NU>,
     ) -> Sides<Self::Scalar, NR, NE>;
 
-    /// What stands under the derivative of a dynamic regression: `primitive_0`, as a rule the outputs whose equations
+    /// Both sides under the derivative of a dynamic regression: `primitive_0`, as a rule the outputs whose equations
     /// are used, and `primitive_1`, the factor of the unknown. Not read if the regression is static.
     fn primitive(&self, _extension: &Self::Extension, _terms: &Self::Terms) -> Sides<Self::Scalar, NR, NE> {
         Sides { known: SVector::zeros(), factor: SMatrix::zeros() }
@@ -83,19 +82,19 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// over-parameterised one.
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
 
-    /// The left inverse `phi_left`: `x` such that `z = phi(x, y)`. Of an estimate of `z` beyond the range of `phi` it
-    /// may have no value: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and changes
-    /// nothing.
+    /// The left inverse `phi_left`: `x` such that `z = phi(x, y)`. It may have no value at an estimate of `z` beyond
+    /// the range of `phi`: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and
+    /// changes nothing.
     fn recover(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX>;
 
-    /// The left inverse without bounds that are put on its states, as by [`Within`](crate::Within): standard errors are asked
-    /// of it, as an estimate that is moved to a bound is no better known there.
+    /// The left inverse without the bounds of [`Within`](crate::Within) on its states. Standard errors use it, as an
+    /// estimate that is moved to a bound is no better known there.
     fn recover_unbounded(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NX> {
         self.recover(z, terms)
     }
 
     /// The extension at the first sample, made of the one that the observer starts with: a model whose coordinates are
-    /// measured puts in what it sees. As it is, if nothing is written.
+    /// measured adds the sample. By default the extension does not change.
     fn begin(&self, extension: &Self::Extension, _terms: &Self::Terms) -> Self::Extension {
         *extension
     }
@@ -110,7 +109,7 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         self.flow(&self.terms(y), u).lambda
     }
 
-    /// What is known in the regression.
+    /// The known side of the regression.
     fn phi_0(
         &self,
         extension: &Self::Extension,
@@ -130,7 +129,7 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         self.regression(extension, &self.terms(y), u).factor
     }
 
-    /// What is known under the derivative of the regression.
+    /// The known side under the derivative of the regression.
     fn primitive_0(&self, extension: &Self::Extension, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NR> {
         self.primitive(extension, &self.terms(y)).known
     }
@@ -146,7 +145,7 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     }
 }
 
-/// A promise: this model can be re-based exactly.
+/// Marks a model that can be re-based exactly.
 ///
 /// It holds if `theta(eta) = eta` and the regression knows `z` only as an affine function: for every shift `c`, moving
 /// `c` from the extension into `theta` (see [`Extension::rebase`]) leaves `phi_1` and `primitive_1` as they are and
@@ -157,8 +156,8 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
 /// ```
 ///
 /// That is so wherever the regression was found as `f_y = A(y, u) + B(y, u) phi`: then `phi_0 = A + B chi`,
-/// `phi_1 = B` (with [`Fundamental`](crate::Fundamental): `A + B xi` and `B Psi`). In both kinds the filtered regressand
-/// then moves by the filtered regressor times `c`, since filtering is linear.
+/// `phi_1 = B` (with [`Fundamental`](crate::Fundamental): `A + B xi` and `B Psi`). In both kinds the filtered
+/// regressand then moves by the filtered regressor times `c`, since filtering is linear.
 pub trait Rebase<const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>:
     Model<NX, NY, NU, NZ, NR, NZ>
 {

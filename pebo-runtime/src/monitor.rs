@@ -1,4 +1,4 @@
-//! Regressors in; how well the data so far determine the unknown out.
+//! Monitors the excitation: how well the data so far determine the unknown.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,7 +8,7 @@ use crate::numeric::linear::solve;
 use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Filter, Real};
 
-/// What the data so far are good for.
+/// The excitation by the data so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -21,7 +21,7 @@ pub enum Excitation {
     Lost,
 }
 
-/// How the noise of sensors gets into the regression.
+/// The way of sensor noise into the regression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Noise<S: Real> {
@@ -40,17 +40,18 @@ enum Noise<S: Real> {
 /// covariance = G^-1 E[s s^T] G^-1
 /// ```
 ///
-/// The noise of a regression is not white: what a filter makes of white samples is not, and the rate of white samples
-/// least of all, of which an average forgets everything but its ends. So `E[s s^T]` is carried along step by step
-/// together with what the filter still holds, which is exact for independent samples and the estimator
-/// [`LeastSquares`](crate::LeastSquares) with the same forgetting and a weak start. Noise that comes in by other ways is
-/// not counted: in `h`, and so in the extension, and in `phi_0` and `phi_1`; where these depend on outputs whose errors
-/// matter, the [output form](crate::OutputForm) and the covariance of its estimator say more.
+/// The noise of a regression is not white: filtered white samples are not, and least of all the rate of white samples,
+/// whose average depends on its ends alone. So `E[s s^T]` is carried along step by step together with the state of the
+/// filter, which is exact for independent samples and the estimator [`LeastSquares`](crate::LeastSquares) with the same
+/// forgetting and a weak start. Noise in `h`, and so in the extension, and in `phi_0` and `phi_1` is not counted; where
+/// these depend on outputs whose errors matter, use the [output form](crate::OutputForm) and the covariance of its
+/// estimator.
 ///
-/// The unknown is known as well as wanted in every direction exactly if no eigenvalue of the covariance in units of what is
-/// wanted is above 1. Then the state is [`Converged`](Excitation::Converged). It is [`Lost`](Excitation::Lost) once the
-/// largest exceeds 2, or the smallest eigenvalue of `G` has fallen to half of what was enough: an estimate that rests
-/// without new data has the error that it had, but the data behind it are forgotten. What another estimator makes of the data is its own matter: a gradient needs its time beyond.
+/// The unknown is known as well as wanted in every direction if and only if no eigenvalue of the covariance, in units
+/// of the wanted one, is above 1. Then the state is [`Converged`](Excitation::Converged). It is
+/// [`Lost`](Excitation::Lost) once the largest exceeds 2, or the smallest eigenvalue of `G` has fallen to half of what
+/// was enough: an estimate without new data keeps its error, but the data behind it are forgotten. Another estimator
+/// may need more time, as a gradient does.
 ///
 /// Cost: that of two linear systems and the eigenvalues of a matrix of `NE` rows at each step.
 ///
@@ -62,13 +63,13 @@ pub struct Monitor<S: Real, const NR: usize, const NE: usize> {
     wanted: SVector<S, NE>,
     forgetting: Decay<S>,
     noise: Noise<S>,
-    /// Of a sample of each row, or its intensity if it is white.
+    /// The variance of a sample of each row, or its intensity if it is white.
     variance: SVector<S, NR>,
-    /// In units of `wanted`, as all that follows.
+    /// In units of `wanted`, as all fields below.
     gramian: Sum<S, NE, NE>,
     /// `E[s s^T]`.
     spread: Sum<S, NE, NE>,
-    /// `E[f^2]` and `E[f v]` of what the filter holds of each row's noise and its last sample.
+    /// `E[f^2]` and `E[f v]`, with the filter's state `f` and the last sample `v` of each row's noise.
     held: SVector<S, NR>,
     held_sample: SVector<S, NR>,
     /// `E[s f]` and `E[s v]`.
@@ -80,9 +81,9 @@ pub struct Monitor<S: Real, const NR: usize, const NE: usize> {
 }
 
 impl<S: Real, const NR: usize, const NE: usize> Monitor<S, NR, NE> {
-    /// Of a regression whose regressand is the rate of sensors through a filter, as of every dynamic one with a
-    /// [`FilteredRegression`](crate::FilteredRegression): the wanted standard error of each unknown, the standard deviation
-    /// of the sensor in each row, the filter, and the rate in 1/s at which data are forgotten (0: never).
+    /// For a regression whose regressand is the rate of sensors through a filter, as every dynamic one with a
+    /// [`FilteredRegression`](crate::FilteredRegression): the wanted standard error of each unknown, the standard
+    /// deviation of the sensor in each row, the filter, and the rate in 1/s at which data are forgotten (0: never).
     ///
     /// # Errors
     /// [`Fault::Gain`] unless the first two are positive and finite, their squares too, and the rate finite and not
@@ -96,7 +97,7 @@ impl<S: Real, const NR: usize, const NE: usize> Monitor<S, NR, NE> {
         Self::of(wanted, &deviations.component_mul(deviations), Noise::Rate(filter), beta)
     }
 
-    /// Of a regression whose regressand is what sensors say, through a filter.
+    /// For a regression whose regressand is the sensors' samples through a filter.
     ///
     /// # Errors
     /// As [`of_rates`](Self::of_rates).
@@ -109,7 +110,7 @@ impl<S: Real, const NR: usize, const NE: usize> Monitor<S, NR, NE> {
         Self::of(wanted, &deviations.component_mul(deviations), Noise::Value(filter), beta)
     }
 
-    /// Of a regression with white noise of a known intensity in each row, in units of its equation squared and second:
+    /// For a regression with white noise of a known intensity in each row, in units of its equation squared and second:
     /// samples `dt` apart with errors of standard deviation `s` have `s^2 dt`, those of a
     /// [`SampledRegression`](crate::SampledRegression) have 1.
     ///
@@ -144,8 +145,8 @@ impl<S: Real, const NR: usize, const NE: usize> Monitor<S, NR, NE> {
     /// Takes the regressor of a step of `dt` seconds, as the estimator does.
     ///
     /// # Errors
-    /// [`Fault::Step`] unless `dt` is positive and finite, [`Fault::State`] if what is carried along would not be finite;
-    /// the monitor is then exactly as before.
+    /// [`Fault::Step`] unless `dt` is positive and finite, [`Fault::State`] if the new state would not be finite; the
+    /// monitor is then exactly as before.
     pub fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, dt: S) -> Result<(), Fault> {
         if !(dt > S::zero() && Real::is_finite(dt)) {
             return Err(Fault::Step);
@@ -202,13 +203,13 @@ impl<S: Real, const NR: usize, const NE: usize> Monitor<S, NR, NE> {
         Ok(())
     }
 
-    /// What the data so far are good for.
+    /// The excitation by the data so far.
     pub fn excitation(&self) -> Excitation {
         self.excitation
     }
 
-    /// One over the largest eigenvalue of the covariance in units of what is wanted: 1 is just as much as wanted, and twice
-    /// that halves the variance; 0 while the data do not determine the unknown.
+    /// The inverse of the largest eigenvalue of the covariance in units of the wanted one: 1 is just as much as wanted,
+    /// and twice that halves the variance; 0 while the data do not determine the unknown.
     pub fn level(&self) -> S {
         let Some(covariance) = self.covariance() else { return S::zero() };
         let largest = -smallest_eigenvalue(&-covariance);

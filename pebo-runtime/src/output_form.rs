@@ -1,4 +1,4 @@
-//! A model in, the same plant with its outputs as the regressand out: nothing is differentiated.
+//! The output form of a model: its outputs are the regressand, and nothing is differentiated.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -6,34 +6,34 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 
 /// The output form of a model with a dynamic regression.
 ///
-/// `d/dt [p_0 + p_1 z] = A + B z` and `z' = Lambda z + h` are together a generalised cascade in `(w, z)` with
-/// `w = p_0(y) + p_1(y) z`, and what is measured is a static regression in it:
+/// `d/dt [p_0 + p_1 z] = A + B z` and `z' = Lambda z + h` combined are a generalised cascade in `(w, z)` with
+/// `w = p_0(y) + p_1(y) z`, and the measurements are a static regression in it:
 ///
 /// ```text
 /// w' = A + B z        z' = Lambda z + h        p_0(y) = w - p_1(y) z
 /// ```
 ///
-/// With `p_0 = y` and `p_1 = 0`, as in most models, this is `y = y_0 + xi_y + Psi_y theta` with `y_0` among the unknowns:
-/// `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the sensors stays
-/// white, and with [`SampledRegression`](crate::SampledRegression), [`LeastSquares`](crate::LeastSquares) with process
-/// noise and [re-basing](crate::Observer::rebasing) at each sample the observer is a Kalman filter of the transformed
-/// plant. Where `A`, `B`, `Lambda` and `h` are free of the outputs it is *the* continuous-discrete Kalman filter; where
-/// they are not, the filter in which measured outputs drive the model.
+/// With `p_0 = y` and `p_1 = 0`, as in most models, this is `y = y_0 + xi_y + Psi_y theta` with `y_0` among the
+/// unknowns: `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the
+/// sensors stays white, and with [`SampledRegression`](crate::SampledRegression), [`LeastSquares`](crate::LeastSquares)
+/// with process noise and [re-basing](crate::Observer::rebasing) at each sample the observer is a Kalman filter of the
+/// transformed plant. Where `A`, `B`, `Lambda` and `h` are free of the outputs it is *the* continuous-discrete Kalman
+/// filter; where they are not, the filter in which measured outputs drive the model.
 ///
-/// Sizes: `NW = NR + NZ` unknowns, those of `w` first. The unknown of the start is `(w, z)` there less `chi_0`, of this
-/// length; the first sample is added to the part of `chi_0` that is of `w`, whose unknown is then the error of that sample:
-/// its variance at the start is the sensor's.
+/// Sizes: `NW = NR + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`, which has
+/// this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error of that
+/// sample: its variance at the start is the sensor's.
 ///
-/// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based, the
-/// Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
+/// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based,
+/// the Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputForm<M, const NR: usize, const NZ: usize> {
     model: M,
-    /// Of each row the place in `y` of the output that it is, where estimates are made of expected outputs.
+    /// The index in `y` of each row's output, where estimates are made of expected outputs.
     rows: Option<[usize; NR]>,
 }
 
-/// What the functions of an [`OutputForm`] need of a sample.
+/// The terms of a sample that the functions of an [`OutputForm`] share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured<T, S: Real, const NY: usize> {
     terms: T,
@@ -52,12 +52,12 @@ impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
         Self { model, rows: None }
     }
 
-    /// The same of a model whose `p_0` are outputs, at these places in `y`, and whose `p_1` is 0. Its estimates are made of
-    /// the outputs as the observer expects them, `phi_left(z, w)`, and not of samples with their noise: worth it where
-    /// `phi_left` depends on outputs.
+    /// The same for a model whose `p_0` are outputs, at these indices in `y`, and whose `p_1` is 0. Its estimates are
+    /// made of the outputs as the observer expects them, `phi_left(z, w)`, and not of samples with their noise: worth
+    /// it where `phi_left` depends on outputs.
     ///
     /// # Errors
-    /// [`Fault::Limits`] if a place is none of `y`.
+    /// [`Fault::Limits`] if an index is out of `y`.
     pub fn expecting<const NX: usize, const NY: usize, const NU: usize>(
         model: M,
         rows: [usize; NR],
@@ -71,7 +71,7 @@ impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
         Ok(Self { rows: Some(rows), ..Self::new(model) })
     }
 
-    /// The outputs with those that have rows as they are expected; none where estimates are made of samples.
+    /// The outputs, those with rows as expected; none where estimates are made of samples.
     fn expected<S: Real, const NY: usize, const NW: usize>(
         &self,
         z: &SVector<S, NW>,
@@ -147,7 +147,7 @@ where
     }
 
     fn begin(&self, extension: &Self::Extension, terms: &Self::Terms) -> Self::Extension {
-        // The unknown of the outputs is then by how much the first sample errs.
+        // The unknown of the outputs is then the error of the first sample.
         let seen = self.regression(extension, terms, &SVector::zeros()).known;
         let mut begun = *extension;
         begun.rebase(&SVector::from_fn(|i, _| seen.get(i).map_or_else(nalgebra::zero, |&seen| -seen)));

@@ -1,4 +1,4 @@
-//! Bounds that the state is known to obey.
+//! Known bounds of the state.
 
 use nalgebra::SVector;
 
@@ -6,9 +6,9 @@ use crate::{Fault, Flow, Model, Real, Rebase, Regression, Sides};
 
 /// A model whose recovered state is projected onto bounds `lower <= x <= upper`, component by component.
 ///
-/// Holds when: the state obeys the bounds. Then the projection brings every component of the error closer to 0 or leaves
-/// it. What is projected is the estimate that goes out: `theta`, the extension and the estimator know nothing of it, so
-/// whatever is proved of them stays so. Bounds of the regression's unknown are for [`Bounded`](crate::Bounded).
+/// Holds when: the state obeys the bounds. Then the projection brings every component of the error closer to 0 or
+/// leaves it. Only the estimate that goes out is projected: `theta`, the extension and the estimator know nothing of
+/// it, so what is proved of them remains true. Bounds of the regression's unknown are for [`Bounded`](crate::Bounded).
 ///
 /// A left inverse without a value is a fault as before, bounds or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ where
     fn recover(&self, z: &SVector<S, NZ>, terms: &M::Terms) -> SVector<S, NX> {
         let x = self.model.recover(z, terms);
         SVector::from_fn(|i, _| match (x[i], self.lower[i], self.upper[i]) {
-            // Neither holds for a NaN; what is infinite is no estimate that a bound could mend.
+            // Neither holds for a NaN; no bound mends an infinite estimate.
             (x, lower, _) if x < lower && Real::is_finite(x) => lower,
             (x, _, upper) if x > upper && Real::is_finite(x) => upper,
             (x, ..) => x,

@@ -44,7 +44,7 @@ impl Model<1, 1, 1, 1, 1, 1> for Mass {
 
 type MassObserver<E, R> = Observer<Mass, E, 1, 1, 1, 1, 1, 1, R>;
 
-/// One sample of a motion that no number of bits makes round.
+/// One sample of a trajectory without round numbers.
 fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
     observer: &mut MassObserver<E, R>,
     k: u32,
@@ -53,7 +53,7 @@ fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
     observer.step(Vector1::new((1.3 * t).sin() + t / 3.0), Vector1::new(t.sin()), 0.01)
 }
 
-/// What is read back.
+/// The value read back.
 type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1>;
 
 fn continues<E, R>(estimator: &E, regression: &R)

@@ -1,12 +1,12 @@
-//! When the loop is sampled, and which samples are written.
+//! The instants of a run, and the samples that are written.
 
 use pebo_cas::Rational;
 use pebo_design::model::{Simulation, Spanned};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::Overrides;
+use crate::overrides::Overrides;
 
-/// A run of that many samples takes minutes; one of more, hours.
+/// A run with this number of samples takes minutes; one with more, hours.
 pub(super) const MOST_SAMPLES: f64 = 2e8;
 
 /// Rows of the table, unless asked otherwise.
@@ -41,7 +41,7 @@ impl Timing {
         for (name, period) in [("step", Some(&step)), ("every", every.as_ref())] {
             let Some(period) = period else { continue };
             if (&duration.seconds - &period.seconds).is_negative() {
-                let message = format!("{} is longer than the duration of {} s", period.said(name), duration.to_f64());
+                let message = format!("{} is longer than the duration of {} s", period.named(name), duration.to_f64());
                 problems.push(
                     Diagnostic::error(Code::NumberOutOfRange, period.span, message)
                         .help(format!("choose a shorter `{name}`, or a longer `duration`")),
@@ -53,7 +53,7 @@ impl Timing {
         if intervals > MOST_SAMPLES {
             let message = format!(
                 "the simulation has {intervals:.3e} samples: {} is too short for a duration of {} s",
-                step.said("step"),
+                step.named("step"),
                 duration.to_f64()
             );
             problems.push(
@@ -96,12 +96,12 @@ impl Timing {
 /// A time that the file or the call sets.
 struct Setting {
     seconds: Rational,
-    /// Where; nowhere in the file if the call sets it.
+    /// The span in the file; nowhere if the call sets it.
     span: Span,
 }
 
 impl Setting {
-    /// That of the call, else that of the file.
+    /// The setting of the call, else that of the file.
     fn resolve(
         name: &str,
         written: Option<&Spanned<pebo_design::model::Decimal>>,
@@ -138,7 +138,7 @@ impl Setting {
     }
 
     /// The setting as messages call it.
-    fn said(&self, name: &str) -> String {
+    fn named(&self, name: &str) -> String {
         let whose = if self.span == Span::NOWHERE { " of the call" } else { "" };
         let seconds = self.to_f64();
         // Without exponent, numbers far from 1 are rows of zeros.

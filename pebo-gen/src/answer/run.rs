@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::derived::Derived;
 use pebo_design::source::Diagnostic;
-use pebo_lab::{Ensemble, Rated, Scenario, Summary, Trace, figure};
+use pebo_lab::{Ensemble, EstimateScore, Scenario, Summary, Trace, draw};
 
 use super::request::{Request, RunRequest, Stage};
 use super::standing::Standing;
@@ -71,7 +71,7 @@ pub(super) fn run(
     }
     let ran = scenario.run_while(&mut progress);
     let trace = ran.map_err(|failure| (Standing::Refused, vec![scenario.explain(&failure)]))?;
-    let figure = wanted.figure.then(|| figure::draw(&trace, &scenario));
+    let figure = wanted.figure.then(|| draw(&trace, &scenario));
     let summary = trace.summary().clone();
     let advice = scenario.advise(&summary);
     Ok((Run { figure, trace: wanted.trace.then_some(trace), ..Run::of(&scenario, summary) }, advice))
@@ -81,7 +81,7 @@ impl Run {
     /// A run without further requests.
     fn of(scenario: &Scenario, summary: Summary) -> Self {
         let own = summary.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
-        let error = |rated: &Rated| FinalError {
+        let error = |rated: &EstimateScore| FinalError {
             state: rated.estimate.state.clone(),
             start: rated.score.first,
             end: rated.score.last,

@@ -1,4 +1,4 @@
-//! Bounds that the unknown is known to obey.
+//! Known bounds of the unknown.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -10,12 +10,12 @@ use crate::{Fault, Real, Turn};
 /// An estimator whose estimate is projected onto bounds `lower <= eta <= upper`, component by component.
 ///
 /// Holds when: the unknown obeys the bounds. Then the projection brings every component of the error closer to 0 or
-/// leaves it. What is projected is the estimate that goes out: the estimator's own keeps the exact form of its
-/// equations (least squares stays least squares, the response stays linear), and its stability needs no help.
+/// leaves it. Only the estimate that goes out is projected: the estimator's own keeps the exact form of its equations
+/// (least squares remain least squares, the response remains linear), and its stability needs no help.
 ///
 /// A [`shift`](Estimator::shift) of the unknown moves the bounds along and a [`turn`](Estimator::turn) turns them, so
-/// they stay said of the unknown as it was at the start; a [`reset`](Estimator::reset) puts them back. Where all turns
-/// together have no inverse any more, nothing is projected. Bounds of the state itself are for
+/// they bound the unknown as it was at the start; a [`reset`](Estimator::reset) puts them back. Where all turns
+/// combined have no inverse any more, nothing is projected. Bounds of the state itself are for
 /// [`Within`](crate::Within).
 ///
 /// Source: Ioannou and Sun, *Robust adaptive control*, 1996, chapter 4 (parameter projection; there it acts
@@ -26,9 +26,9 @@ pub struct Bounded<S: Real, E, const NE: usize> {
     estimator: E,
     lower: SVector<S, NE>,
     upper: SVector<S, NE>,
-    /// How far the unknown has moved.
+    /// The sum of the unknown's shifts.
     moved: Sum<S, NE, 1>,
-    /// How it has turned, if it has: it is `turned eta + moved` of the unknown `eta` at the start.
+    /// The product of its turns, if there were any: it is `turned eta + moved` of the unknown `eta` at the start.
     turned: Option<SMatrix<S, NE, NE>>,
 }
 

@@ -22,12 +22,13 @@ use crate::{Fault, Real, Turn};
 /// Method: implicit step, `error_new = error / (1 + gamma_i dt Delta^2)`, stable at any gain and step. The mixing is
 /// applied to `q - Q theta`, where it cancels nothing; the determinant is never divided by.
 ///
-/// A column of zeros in the regressor makes `Delta` 0, and no component moves: leave out an unknown that nothing depends on.
+/// A column of zeros in the regressor makes `Delta` 0, and no component moves: leave out an unknown that nothing
+/// depends on.
 ///
-/// A [`turn`](Estimator::turn) of the unknown leaves what is known, but not what a component is: each then converges by
-/// itself in the coordinates of the moment, and it is there that its error never grows.
+/// A [`turn`](Estimator::turn) of the unknown keeps the information, but changes the components: each then converges by
+/// itself in the coordinates of the moment, and its error never grows there.
 ///
-/// Units of `gamma`: 1/s, as `Delta` has none and is about 1 where the unknowns are seen well.
+/// Units of `gamma`: 1/s, as `Delta` has none and is about 1 where the data determine the unknowns well.
 ///
 /// Source: Aranovskiy, Bobtsov, Ortega, Pyrkin, *Performance enhancement of parameter estimators via dynamic regressor
 /// extension and mixing*, IEEE TAC, 2017, arXiv:1509.02763; Cramer's rule: Ortega, Aranovskiy, Pyrkin, Astolfi,
@@ -89,7 +90,7 @@ impl<S: Real, X, const NE: usize> Drem<S, X, NE> {
         let mixed = adjugate_times(&matrix, &(self.extension.vector() - matrix * self.theta.value()));
         let delta = determinant(&matrix);
         // An infinite gain times a determinant of 0 would not be a number. At a third of the digits of the largest
-        // number nothing is kept of an error that is seen at all.
+        // number nothing is kept of an error that the data determine at all.
         let most = S::one() / (S::EPSILON * S::EPSILON * S::EPSILON);
         let taken = self.gains.map(|gain| {
             let reach = (gain * dt).min(most) * delta;

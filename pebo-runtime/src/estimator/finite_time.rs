@@ -1,4 +1,4 @@
-//! DREM that has the unknown after a finite time, exactly.
+//! DREM with exact convergence in finite time.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -27,9 +27,9 @@ use crate::{Fault, Real, Turn};
 ///   excitation; after a jump the estimate is exact again when the reference and the extension's memory lie behind the
 ///   jump, at most two periods of excitation later.
 ///
-/// A [`turn`](Estimator::turn) of the unknown mixes the components: what is left of the error since the reference is then
-/// a matrix `W`, and the estimate `theta(ref) + (1 - W)^-1 (theta - theta(ref))` once `|(1 - W)^-1| <= 1/mu`; until then it is
-/// that of DREM where the clip would not bound it.
+/// A [`turn`](Estimator::turn) of the unknown mixes the components: the factor of the error since the reference is then
+/// a matrix `W`, and the estimate is `theta(ref) + (1 - W)^-1 (theta - theta(ref))` once `|(1 - W)^-1| <= 1/mu`; until
+/// then it is that of DREM where the clip would not bound it.
 ///
 /// Method: implicit steps in theta and w with the same factor, so the identity holds to rounding at any gain and step.
 /// Two references are kept instead of a delay line: one in use, one that ripens.
@@ -55,8 +55,8 @@ pub struct FiniteTime<S: Real, X, const NE: usize> {
 struct Reference<S: Real, const NE: usize> {
     /// The estimate of DREM then.
     theta: SVector<S, NE>,
-    /// What is gone since of the error then, `1 - W`. In steps that take less than the resolution of 1, `W` itself would
-    /// stand still. Diagonal as long as nothing was turned.
+    /// The share of that error which has gone since, `1 - W`. In steps that take less than the resolution of 1, `W`
+    /// itself would not change. Diagonal as long as nothing was turned.
     gone: Sum<S, NE, NE>,
     age: Sum<S, 1, 1>,
 }
@@ -80,7 +80,7 @@ impl<S: Real, const NE: usize> Reference<S, NE> {
         self.gone.add(&turn.of_map(self.gone.value()));
     }
 
-    /// Whether nothing was turned.
+    /// True if nothing was turned.
     fn is_diagonal(&self) -> bool {
         let gone = self.gone.value();
         (0..NE).all(|i| (0..NE).all(|j| i == j || gone[(i, j)] == S::zero()))
@@ -129,7 +129,7 @@ impl<S: Real, X, const NE: usize> FiniteTime<S, X, NE> {
         self.used.inverse(self.clip).map_or(*now, |inverse| theta + inverse * (now - theta))
     }
 
-    /// Whether the estimate is past the clip in every component: exact without noise.
+    /// True if the estimate is past the clip in every component: exact without noise.
     pub fn has_arrived(&self) -> bool {
         self.is_ripe(&self.used)
     }

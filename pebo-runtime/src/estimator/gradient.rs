@@ -19,7 +19,7 @@ use crate::{Fault, Real, Turn};
 pub struct Gradient<S: Real, const NE: usize> {
     /// `Gamma^-1`.
     inertia: Information<S, NE>,
-    /// Whether the gain turns with the unknown.
+    /// True if the gain turns with the unknown.
     carried: bool,
     theta: Sum<S, NE, 1>,
 }
@@ -45,8 +45,8 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
         Self { inertia, carried: false, theta: Sum::new(SVector::zeros()) }
     }
 
-    /// The same with a gain that turns with the unknown, `Gamma` becoming `T Gamma T^T`: the estimator of the unknown as
-    /// it was at the start, whatever coordinates it is told in. Without, the gain is one in the coordinates of the moment.
+    /// The same with a gain that turns with the unknown, `Gamma` becoming `T Gamma T^T`: the estimator of the unknown
+    /// as it was at the start, in any coordinates. Without it, the gain is one in the coordinates of the moment.
     #[must_use]
     pub fn carrying_its_gain(self) -> Self {
         Self { carried: true, ..self }
@@ -89,7 +89,7 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
         self.theta.add(&turn.of_unknown(self.theta.value()));
         if self.carried {
             self.inertia.turn(turn);
-            // Told of here, and not looked for at each step.
+            // Marked here rather than looked for at each step.
             let gain: S = as_blemish(self.inertia.is_finite());
             self.theta.add(&SVector::repeat(gain));
         }

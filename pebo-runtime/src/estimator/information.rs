@@ -1,4 +1,4 @@
-//! Weighted linear equations in, one after another; the vector that fits them best out.
+//! Weighted least squares, one equation after another, in triangular form.
 
 use core::cmp::Ordering;
 
@@ -9,13 +9,13 @@ use crate::{Fault, Real, Turn};
 
 /// A weighted least-squares problem, kept in triangular form.
 ///
-/// It stands for `minimise sum_i w_i (v_i - row_i d)^2`, with the information matrix `sum_i w_i row_i^T row_i = U^T D
-/// U`,
-/// `U` unit upper triangular and `D` diagonal.
+/// It minimises `sum_i w_i (v_i - row_i d)^2` and has the information matrix `sum_i w_i row_i^T row_i = U^T D U`, `U`
+/// unit upper triangular and `D` diagonal.
 ///
-/// Method: Givens rotations without square roots. Nothing is subtracted from `D`, so it stays positive and no row, weight or ratio between them makes the problem singular. The matrix itself is never
-/// formed: that would square the ratios. Reference: Gentleman, *Least squares computations by Givens transformations
-/// without square roots*, J. Inst. Maths Applics, 1973, and algorithm AS 75, 1974.
+/// Method: Givens rotations without square roots. Nothing is subtracted from `D`, so it remains positive and no row,
+/// weight or ratio between them makes the problem singular. The matrix itself is never formed: that would square the
+/// ratios. Reference: Gentleman, *Least squares computations by Givens transformations without square roots*, J. Inst.
+/// Maths Applics, 1973, and algorithm AS 75, 1974.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Information<S: Real, const N: usize> {
@@ -55,7 +55,7 @@ impl<S: Real, const N: usize> Information<S, N> {
         let mut variances = SVector::<S, N>::zeros();
         for j in (0..N).rev() {
             let pivot = v[(j, j)];
-            // What is left of the diagonal after elimination must exceed its rounding error.
+            // The rest of the diagonal after elimination must exceed its rounding error.
             let positive = pivot > S::EPSILON * covariance[(j, j)];
             if !positive {
                 return Err(Fault::Gain);
@@ -91,15 +91,14 @@ impl<S: Real, const N: usize> Information<S, N> {
         self.rotate::<false>(row, value, weight);
     }
 
-    /// Adds the equation `row * d = value` with the weight 1; by how much the sum of weighted squares grows by it where it is
-    /// least.
+    /// Adds the equation `row * d = value` with the weight 1; returns the growth of the least sum of weighted squares.
     pub(crate) fn absorb_and_judge(&mut self, row: &SVector<S, N>, value: S) -> S {
         let (rest, weight) = self.rotate::<false>(row, value, S::one());
         weight * rest * rest
     }
 
-    /// [`absorb`](Self::absorb), and what is left of the equation: value and weight. `VAGUE` if weights may be zero before: it
-    /// is asked at compile time, as each step of an estimator comes here.
+    /// [`absorb`](Self::absorb), returning the rest of the equation: value and weight. `VAGUE` if weights may be zero
+    /// before: a constant, as each step of an estimator comes here.
     #[inline]
     fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) -> (S, S) {
         let (mut row, mut value, mut weight) = (*row, value, weight);
@@ -137,7 +136,7 @@ impl<S: Real, const N: usize> Information<S, N> {
             let row = row + turn.of_factor(&row);
             turned.rotate::<true>(&row.transpose(), self.target[i], self.weight[i]);
         }
-        // What dies out is known ever better, up to weights that overflow and are a fault for ever: not better than this.
+        // A component that dies out is known ever better; the cap keeps its weight from overflowing, a fault for ever.
         let most = S::max_value().map_or(S::one() / S::EPSILON, |largest| largest * S::EPSILON);
         if turned.weight.iter().any(|&weight| weight > most) {
             (0..N).for_each(|i| turned.diffuse(i, S::one() / most));
@@ -145,12 +144,12 @@ impl<S: Real, const N: usize> Information<S, N> {
         *self = turned;
     }
 
-    /// Component `i` of `d` has moved by an unknown step of this variance, `variance >= 0`: the covariance gains it on its
-    /// diagonal.
+    /// Component `i` of `d` has moved by an unknown step of this variance, `variance >= 0`: the covariance gains it on
+    /// its diagonal.
     ///
     /// Method: the step is one more unknown with an equation of its own, eliminated by rotations from row `i` upwards,
-    /// which keeps the form triangular; nothing is subtracted from a weight. Reference: Bierman, *Factorization methods for
-    /// discrete sequential estimation*, 1977, chapter VI (the square-root information filter's time update).
+    /// which keeps the form triangular; nothing is subtracted from a weight. Reference: Bierman, *Factorization methods
+    /// for discrete sequential estimation*, 1977, chapter VI (the square-root information filter's time update).
     pub fn diffuse(&mut self, i: usize, variance: S) {
         let mut variance = variance;
         let mut above = SMatrix::<S, 1, N>::zeros();
@@ -229,8 +228,8 @@ impl<S: Real, const N: usize> Information<S, N> {
         if all_finite(&self.weight) { Ok(solution) } else { Err(Fault::State) }
     }
 
-    /// A root of the inverse of the information matrix: `L = U^-1 D^-1/2`, so that `(U^T D U)^-1 = L L^T`. None where it is
-    /// not finite.
+    /// A root of the inverse of the information matrix: `L = U^-1 D^-1/2`, so that `(U^T D U)^-1 = L L^T`. None where
+    /// it is not finite.
     pub fn covariance_root(&self) -> Option<SMatrix<S, N, N>> {
         let mut root = SMatrix::identity();
         for j in 0..N {
@@ -254,13 +253,13 @@ impl<S: Real, const N: usize> Information<S, N> {
         &self.weight
     }
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     pub fn is_finite(&self) -> bool {
         all_finite(&self.upper) && all_finite(&self.weight) && all_finite(&self.target)
     }
 }
 
-/// Whether the matrix is its transpose, up to the rounding of a product computed in either order.
+/// True if the matrix is its transpose, up to the rounding of a product computed in either order.
 fn is_symmetric<S: Real, const N: usize>(matrix: &SMatrix<S, N, N>) -> bool {
     let largest = matrix.iter().fold(S::zero(), |largest, &element| largest.max(Real::abs(element)));
     let four: S = Real::from_f64(4.0);

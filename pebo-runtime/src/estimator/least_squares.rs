@@ -1,4 +1,4 @@
-//! Recursive least squares that forgets, and never more than it started with.
+//! Recursive least squares with forgetting, whose covariance never exceeds its start.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -17,17 +17,17 @@ use crate::{Fault, Real, Turn};
 /// Holds when: without forgetting (`beta = 0`) the estimate minimises the integral of the squared equation error plus
 /// `|theta - theta(0)|^2` in the norm of `R_0`: it settles as soon as the data determine it, and white noise leaves it
 /// the least variance of all unbiased estimates, up to the weight of `R_0`. With `beta > 0` and persistent excitation
-/// it follows a moving unknown with the time constant
-/// `1/beta`. Since `R >= R_0` at all times, `P` never exceeds its start: no wind-up in directions without excitation,
-/// where the estimate rests. [Process noise](Self::with_process_noise) `Q` says instead that the unknown wanders: then
-/// this is a Kalman filter, `P` grows where there is no excitation, and nothing is forgotten that still holds.
+/// it follows a moving unknown with the time constant `1/beta`. Since `R >= R_0` at all times, `P` never exceeds its
+/// start: no wind-up in directions without excitation, where the estimate is constant.
+/// [Process noise](Self::with_process_noise) `Q` instead lets the unknown wander: then this is a Kalman filter, `P`
+/// grows where there is no excitation, and nothing is forgotten that still holds.
 ///
-/// A [`turn`](Estimator::turn) of the unknown takes `P` to `T P T^T`; `R_0`, towards which is forgotten, and `Q` are
-/// then said of the unknown as it is now. Weights that a turn would take beyond the largest number stay below it.
+/// A [`turn`](Estimator::turn) of the unknown takes `P` to `T P T^T`; `R_0`, the limit of forgetting, and `Q` then
+/// apply to the unknown as it is now. Weights that a turn would take beyond the largest number are kept below it.
 ///
 /// Method: `R` in the triangular form of [`Information`], the regressor held over the step: the past decays by
-/// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is subtracted, so `R` stays
-/// positive definite at any step and gain, and the error never grows in the norm of `R`.
+/// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is
+/// subtracted, so `R` remains positive definite at any step and gain, and the error never grows in the norm of `R`.
 ///
 /// In `f32` a weight takes in no more than the last `2^24` samples or so: at a rate below `2^-24/dt`, 0.6/s in steps of
 /// 100 ns, the estimator forgets faster than asked, and one with `beta = 0` is that of so many samples.
@@ -35,8 +35,7 @@ use crate::{Fault, Real, Turn};
 /// Units of `P`: `theta^2` over (regression equation)^2 and second, as the gain of [`Gradient`](super::Gradient): white
 /// noise of variance `s^2` in samples `dt` apart makes the covariance of the estimate `s^2 dt P`.
 ///
-/// Source: Slotine and Li, *Applied nonlinear control*, 1991, chapter 8 (least squares with
-/// exponential forgetting);
+/// Source: Slotine and Li, *Applied nonlinear control*, 1991, chapter 8 (least squares with exponential forgetting);
 /// the bound by an inflow of `R_0`: Gunnarsson, *Combining tracking and regularization in recursive least squares
 /// identification*, CDC 1996.
 #[derive(Clone, Copy, Debug, PartialEq)]

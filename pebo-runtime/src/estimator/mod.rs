@@ -1,4 +1,4 @@
-//! A regression `regressand = regressor * eta` in, step by step; an estimate of the constant `eta` out.
+//! Estimators of the constant `eta` in a regression `regressand = regressor * eta`, step by step.
 //!
 //! | estimator | converges with | then follows a jump of `eta` |
 //! |---|---|---|
@@ -53,23 +53,23 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// The estimate of `eta`.
     fn estimate(&self) -> SVector<S, NE>;
 
-    /// Follows a move of the unknown from `eta` to `eta + shift`: the error of the estimate, now and later, is that of
-    /// an estimator that was never moved. All memory of past regressands has to move too.
+    /// Follows a shift of the unknown from `eta` to `eta + shift`: the error of the estimate, now and later, is that of
+    /// an estimator that was never shifted. All memory of past regressands has to move too.
     fn shift(&mut self, shift: &SVector<S, NE>);
 
-    /// Follows a change of the unknown from `eta` to `T eta`: the estimate becomes `T` times what it was, and all memory of
-    /// past regressors and regressands is that of regressors times `T^-1`. What is a setting and no memory, as a gain,
-    /// stays as it is, now said of the new unknown.
+    /// Follows a change of the unknown from `eta` to `T eta`: the estimate is multiplied by `T`, and all memory of past
+    /// regressors and regressands becomes that of regressors times `T^-1`. Settings, as gains, do not change: they then
+    /// apply to the new unknown.
     fn turn(&mut self, turn: &Turn<S, NE>);
 
     /// Starts again from an estimate, with no memory of the past.
     fn reset(&mut self, estimate: &SVector<S, NE>);
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     fn is_finite(&self) -> bool;
 
-    /// The same as a number, 0 or NaN, which an [`Observer`](crate::Observer) adds to others at every step: to be written
-    /// where that is cheaper, as the sum of all numbers times zero.
+    /// The same as a number, 0 or NaN, which an [`Observer`](crate::Observer) adds to others at every step: to be
+    /// written where that is cheaper, as the sum of all numbers times zero.
     fn blemish(&self) -> S {
         as_blemish(self.is_finite())
     }
@@ -77,7 +77,7 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
 
 /// An estimator that knows how uncertain its estimate is.
 pub trait Uncertain<S: Real, const NE: usize> {
-    /// A root of the covariance of the estimate `dt` seconds from now, before that instant's sample: `L` with the covariance
+    /// A root of the covariance of the estimate in `dt` seconds, before that instant's sample: `L` with the covariance
     /// `L L^T`, in units of the unknown where the regression has white noise of intensity 1, as a
     /// [`SampledRegression`](crate::SampledRegression) has. None where it has no finite value.
     fn covariance_root(&self, dt: S) -> Option<SMatrix<S, NE, NE>>;

@@ -1,4 +1,4 @@
-//! The gradient whose speed does not depend on the size of the regressor.
+//! The normalised gradient: its speed does not depend on the size of the regressor.
 
 use nalgebra::{SMatrix, SVector};
 

@@ -1,18 +1,18 @@
-//! What becomes of the extension, which any offset of a sensor makes run away.
+//! Forms of the extension without drift; any offset of a sensor makes the plain one run away.
 
 use nalgebra::SVector;
 
 use crate::{Fault, Real};
 
-/// How an observer that can be re-based keeps `chi` or `xi` from running away (the paper, remark R5).
+/// The form in which an observer that can be re-based keeps `chi` or `xi` from running away (the paper, remark R5).
 ///
 /// Each form moves a shift `c` from `chi` into the estimated `theta` and into all memory of past regressands. That is
 /// exact: all forms give the same estimates of the state, up to rounding, and so does the plain one as long as its
 /// `chi` keeps its digits.
 ///
-/// Of a [`Fundamental`](crate::Fundamental) extension `chi` is `xi`, and `Psi` starts again from the identity with each
-/// shift, as in [re-basing](crate::Observer::rebasing): what is carried over and what is not is said there. A `Psi` that dies
-/// out calls for [`Free`](Self::Free), [`Leak`](Self::Leak) or re-basing.
+/// For a [`Fundamental`](crate::Fundamental) extension `chi` is `xi`, and `Psi` starts again from the identity with
+/// each shift, as in [re-basing](crate::Observer::rebasing), which lists the memory that is carried over. A `Psi` that
+/// dies out calls for [`Free`](Self::Free), [`Leak`](Self::Leak) or re-basing.
 ///
 /// | form | `chi` | cost beside [`Observer::step`](crate::Observer::step) |
 /// |---|---|---|
@@ -38,22 +38,22 @@ use crate::{Fault, Real};
 ///
 /// # Offset of a sensor
 ///
-/// An offset `b` in `h` makes the true `theta` a ramp of slope `b`, in every form alike. What the estimate then misses
-/// is the estimator's: `b/(gamma |Phi|^2)` for a gradient, `b/beta` for least squares that forgets at `beta`, and `b
-/// t/2`, growing without end, for one that does not. An observer that must live with an offset needs an estimator that
-/// forgets.
+/// An offset `b` in `h` makes the true `theta` a ramp of slope `b`, in every form alike. The error of the estimate then
+/// depends on the estimator: `b/(gamma |Phi|^2)` for a gradient, `b/beta` for least squares that forgets at `beta`, and
+/// `b t/2`, growing without end, for one that does not. An observer that must live with an offset needs an estimator
+/// that forgets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drift<S: Real> {
     /// Re-base by `chi` when a component exceeds the bound, in units of z.
     Above(S),
-    /// Let `chi` leak at the rate, in 1/s: `chi' = h - rate chi`, and what leaks goes into `theta`.
+    /// Let `chi` leak at the rate, in 1/s: `chi' = h - rate chi`, and the leak goes into `theta`.
     Leak(S),
     /// Re-base by `chi` at every step.
     Free,
 }
 
 impl<S: Real> Drift<S> {
-    /// Whether something is to be moved from the extension as it is.
+    /// True if the present extension calls for a shift.
     ///
     /// # Errors
     /// [`Fault::Gain`] if the bound is not positive or the rate negative or either NaN.
@@ -66,7 +66,7 @@ impl<S: Real> Drift<S> {
         }
     }
 
-    /// What to move after a step of `dt` seconds.
+    /// The shift after a step of `dt` seconds.
     pub(crate) fn shift<const NZ: usize>(self, offset: &SVector<S, NZ>, dt: S) -> SVector<S, NZ> {
         match self {
             Self::Above(_) | Self::Free => *offset,

@@ -1,7 +1,8 @@
-//! The dynamic extension: samples of `h` (and `Lambda`) in, the coordinates `z` out up to a constant unknown `theta`.
+//! The dynamic extension: integrates samples of `h` (and `Lambda`) to the coordinates `z` less a constant unknown
+//! `theta`.
 //!
-//! After every step `z(t) = chi(t) + theta` ([`Integrator`]) or `z(t) = xi(t) + Psi(t) theta` ([`Fundamental`]) holds as
-//! well as the samples tell: the error is of second order in the step.
+//! After every step `z(t) = chi(t) + theta` ([`Integrator`]) or `z(t) = xi(t) + Psi(t) theta` ([`Fundamental`]) holds
+//! as well as the samples tell: the error is of second order in the step.
 
 mod drift;
 mod turn;
@@ -33,7 +34,7 @@ impl<S: Real, const NZ: usize> Flow<S, NZ> {
     }
 }
 
-/// What a [`Model`](crate::Model) integrates: a solution of the flow with a known start.
+/// The dynamic extension of a [`Model`](crate::Model): a solution of the flow with a known start.
 pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
     /// The extension at its start, where `z = start + theta`.
     fn new(start: SVector<S, NZ>) -> Self;
@@ -47,21 +48,21 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
     /// [`Fault::Singular`] if the step is too long for `Lambda`; the extension is then unspecified.
     fn advance(&mut self, start: &Flow<S, NZ>, end: &Flow<S, NZ>, dt: S) -> Result<(), Fault>;
 
-    /// Moves `shift` from the extension into `theta`: `coordinates(theta + shift)` is now what
-    /// `coordinates(theta)` was.
+    /// Moves `shift` from the extension into `theta`: `coordinates(theta + shift)` then equals `coordinates(theta)`
+    /// before.
     fn rebase(&mut self, shift: &SVector<S, NZ>);
 
-    /// What is integrated with the known start: `chi` or `xi`.
+    /// The solution with the known start: `chi` or `xi`.
     fn offset(&self) -> &SVector<S, NZ>;
 
-    /// Makes the fundamental matrix the identity and says how `theta` turns with it: `coordinates(Psi theta)` is now what
-    /// `coordinates(theta)` was. None if it is the identity always.
+    /// Makes the fundamental matrix the identity and returns the turn of `theta`: `coordinates(Psi theta)` then equals
+    /// `coordinates(theta)` before. None if it is always the identity.
     ///
     /// # Errors
     /// [`Fault::Singular`] if the matrix has no inverse, to rounding; the extension is then unspecified.
     fn take_turn(&mut self) -> Result<Option<Turn<S, NZ>>, Fault>;
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     fn is_finite(&self) -> bool;
 
     /// The same as a number, 0 or NaN, see [`Estimator::blemish`](crate::Estimator::blemish).
@@ -122,12 +123,13 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
     }
 }
 
-/// `xi' = Lambda xi + h`, `Psi' = Lambda Psi` with `Psi(0) = I`, so that `z = xi + Psi theta` (generalised PEBO: Ortega,
-/// Bobtsov, Nikolaev, Schiffer, Dochain, *Generalized parameter estimation-based observers*, Automatica, 2021).
+/// `xi' = Lambda xi + h`, `Psi' = Lambda Psi` with `Psi(0) = I`, so that `z = xi + Psi theta` (generalised PEBO:
+/// Ortega, Bobtsov, Nikolaev, Schiffer, Dochain, *Generalized parameter estimation-based observers*, Automatica, 2021).
 ///
 /// Both advance by the exponential of the mean of `Lambda` at both ends, with the mean of `h`: exact to rounding where
-/// both are constant over the step and `|Lambda| dt` is below 0.02, within 1e-5 of a rate at any step, and of second order
-/// where they vary. As both parts advance by the same map, moving a shift between `xi` and `theta` commutes with it.
+/// both are constant over the step and `|Lambda| dt` is below 0.02, within 1e-5 of a rate at any step, and of second
+/// order where they vary. As both parts advance by the same map, moving a shift between `xi` and `theta` commutes with
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fundamental<S: Real, const NZ: usize> {

@@ -1,4 +1,4 @@
-//! A linear change of the unknown, with its inverse, as what both add to the identity.
+//! A linear change of the unknown with its inverse, both stored less the identity.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -25,7 +25,7 @@ impl<S: Real, const N: usize> Turn<S, N> {
         Ok(Self { gained, lost: solve(*matrix.value(), gained)? })
     }
 
-    /// The change of the first `M` unknowns, where the others stay by themselves.
+    /// The change of the first `M` unknowns, where the others are not mixed with them.
     #[must_use]
     pub fn leading<const M: usize>(&self) -> Turn<S, M> {
         let first =
@@ -33,29 +33,29 @@ impl<S: Real, const N: usize> Turn<S, N> {
         Turn { gained: first(&self.gained), lost: first(&self.lost) }
     }
 
-    /// What to add to an estimate of the unknown: `(matrix - 1) eta`.
+    /// The increment of an estimate of the unknown: `(matrix - 1) eta`.
     pub fn of_unknown<const C: usize>(&self, eta: &SMatrix<S, N, C>) -> SMatrix<S, N, C> {
         self.gained * eta
     }
 
-    /// What to add to a factor of the unknown: `factor (matrix^-1 - 1)`.
+    /// The increment of a factor of the unknown: `factor (matrix^-1 - 1)`.
     pub fn of_factor<const R: usize>(&self, factor: &SMatrix<S, R, N>) -> SMatrix<S, R, N> {
         -(factor * self.lost)
     }
 
-    /// What to add to a sum of products of a factor and something known: `(matrix^-T - 1) correlation`.
+    /// The increment of a sum of products of a factor and a known side: `(matrix^-T - 1) correlation`.
     pub fn of_correlation(&self, correlation: &SVector<S, N>) -> SVector<S, N> {
         -self.lost.tr_mul(correlation)
     }
 
-    /// What to add to a sum of products of a factor with itself: `matrix^-T gramian matrix^-1 - gramian`.
+    /// The increment of a sum of products of a factor with itself: `matrix^-T gramian matrix^-1 - gramian`.
     pub fn of_gramian(&self, gramian: &SMatrix<S, N, N>) -> SMatrix<S, N, N> {
         let right = -(gramian * self.lost);
         let both = gramian + right;
         right - self.lost.tr_mul(&both)
     }
 
-    /// What to add to a map of the unknown into itself: `matrix map matrix^-1 - map`.
+    /// The increment of a map of the unknown into itself: `matrix map matrix^-1 - map`.
     pub fn of_map(&self, map: &SMatrix<S, N, N>) -> SMatrix<S, N, N> {
         let left = self.gained * map;
         left - (map + left) * self.lost

@@ -1,5 +1,4 @@
-//! How much of the past is kept over a step, and how much of the present is taken, when the past is forgotten at a
-//! rate.
+//! Exponential forgetting over a step: the share of the past that is kept, and the weight of the present.
 
 use crate::{Fault, Real};
 
@@ -8,7 +7,7 @@ use crate::{Fault, Real};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Decay<S: Real> {
     rate: S,
-    /// Those of the last step: sampling is periodic as a rule, and they cost an exponential.
+    /// The shares of the last step: sampling is periodic as a rule, and they cost an exponential.
     share: Share<S>,
 }
 

@@ -1,4 +1,4 @@
-//! The smallest eigenvalue of a symmetric matrix. Nothing here panics, and nothing runs longer than told.
+//! The smallest eigenvalue of a symmetric matrix, without panics and in a bounded number of sweeps.
 
 use nalgebra::SMatrix;
 
@@ -18,7 +18,7 @@ pub(crate) fn smallest_eigenvalue<S: Real, const N: usize>(matrix: &SMatrix<S, N
         for p in 0..N {
             for q in p + 1..N {
                 let off = a[(p, q)];
-                // What no longer changes either diagonal element is zero.
+                // An entry that no longer changes either diagonal element is zero.
                 let small = S::EPSILON * Real::sqrt(Real::abs(a[(p, p)])) * Real::sqrt(Real::abs(a[(q, q)]));
                 if Real::abs(off) <= small {
                     continue;

@@ -1,4 +1,4 @@
-//! A linear system with constant coefficients over one step: `z_new = z + gained z + driven`.
+//! Advances a linear system with constant coefficients over one step: `z_new = z + gained z + driven`.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,24 +8,24 @@ use crate::{Fault, Real};
 /// More halvings than any step needs that is not 1e19 times too long.
 const HALVINGS: u32 = 64;
 
-/// What a step of `z' = Lambda z + h` does.
+/// The map of a step of `z' = Lambda z + h`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Propagator<S: Real, const N: usize> {
     /// `e^q - 1`, `q = Lambda dt`.
     pub(crate) gained: SMatrix<S, N, N>,
     /// `(e^q - 1) q^-1 h dt`, whether or not `q` has an inverse.
     pub(crate) driven: SVector<S, N>,
-    /// `e^q` itself after a long step, of which the identity would leave nothing where it dies out.
+    /// `e^q` itself after a long step: where it dies out, rounding beside the identity would leave nothing of it.
     pub(crate) whole: Option<SMatrix<S, N, N>>,
 }
 
 impl<S: Real, const N: usize> Propagator<S, N> {
     /// The step with `q = Lambda dt` and `drive = h dt`.
     ///
-    /// Method: `(e^q - 1) q^-1` by the diagonal Pade approximant of order (3, 3) of the exponential, whose relative error
-    /// is `|q|^7/1e5`; `q` is halved until `|q| <= 1` and the result squared as often, which keeps its sign and decay at any
-    /// step. Source: Higham, *The scaling and squaring method for the matrix exponential revisited*, SIAM J. Matrix
-    /// Anal. Appl., 2005.
+    /// Method: `(e^q - 1) q^-1` by the diagonal Pade approximant of order (3, 3) of the exponential, whose relative
+    /// error is `|q|^7/1e5`; `q` is halved until `|q| <= 1` and the result squared as often, which keeps its sign and
+    /// decay at any step. Source: Higham, *The scaling and squaring method for the matrix exponential revisited*, SIAM
+    /// J. Matrix Anal. Appl., 2005.
     ///
     /// # Errors
     /// [`Fault::Singular`] if `q` is so large that no number of halvings will do.
@@ -60,7 +60,7 @@ impl<S: Real, const N: usize> Propagator<S, N> {
     }
 }
 
-/// Whether `|q| > 1` in the units of the coordinates that make it smallest, or nearly so. Not so of a `q` that is not
+/// True if `|q| > 1` in the units of the coordinates that make it smallest, or nearly so. False for a `q` that is not
 /// finite, which the observer finds in the result.
 fn is_long<S: Real, const N: usize>(q: &SMatrix<S, N, N>, square: &SMatrix<S, N, N>) -> bool {
     let rows = square.map(Real::abs) * SVector::<S, N>::repeat(S::one());

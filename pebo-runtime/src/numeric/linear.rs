@@ -1,4 +1,4 @@
-//! A square linear system in, its solution out, or the fact that there is none. Nothing here panics.
+//! Solves a square linear system, or finds that it is singular. Never panics.
 
 use nalgebra::SMatrix;
 
@@ -6,8 +6,8 @@ use crate::{Fault, Real};
 
 /// Solves `matrix * X = right` by elimination with row pivoting.
 ///
-/// Each entry carries the size of the terms that it is the sum of, so whether a pivot is but rounding does not depend on
-/// the units of rows and columns.
+/// Each entry carries the size of the terms of its sum, so the test of a pivot against rounding does not depend on the
+/// units of rows and columns.
 ///
 /// # Errors
 /// [`Fault::Singular`] if a pivot vanishes against its terms: `|pivot| <= 4 EPSILON * sum |terms|`.

@@ -18,10 +18,10 @@ use nalgebra::ComplexField;
 /// 1.5 * 2^23: a small number added to it is rounded to an integer, which the last bits of the sum hold.
 const ROUNDER: f32 = 12_582_912.0;
 
-/// Where the reduction below is good to.
+/// The largest angle that the reduction below is accurate for.
 const LARGEST_ANGLE: f32 = 1e4;
 
-/// An angle less its nearest multiple of pi/2, and which multiple that was, modulo 4.
+/// An angle less its nearest multiple of pi/2, and that multiple modulo 4.
 #[inline]
 fn reduce(x: f32) -> (f32, u32) {
     let shifted = x * FRAC_2_PI + ROUNDER;
@@ -67,7 +67,7 @@ pub(crate) fn cos(x: f32) -> f32 {
     if quadrant == 1 || quadrant == 2 { -value } else { value }
 }
 
-/// Sine and cosine of an angle in radians: to the last bit what [`sin`] and [`cos`] give.
+/// Sine and cosine of an angle in radians, to the last bit the values of [`sin`] and [`cos`].
 #[inline]
 pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
     if x.abs() > LARGEST_ANGLE {

@@ -1,7 +1,7 @@
-//! Increments in, their sum out, without the loss of what is too small for the sum.
+//! Sums with the rounding error carried along, so that increments too small for the sum are not lost.
 //!
 //! A filter with `alpha dt = 1e-6` changes by less than the resolution of `f32` long before it has settled: a plain sum
-//! would stop there, percents away. The carried rounding error removes this at the price of ten additions an element.
+//! would stop there, percents away. Carrying the error costs ten additions an element.
 
 use nalgebra::SMatrix;
 
@@ -19,7 +19,7 @@ pub struct Sum<S: Real, const R: usize, const C: usize> {
 }
 
 impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
-    /// A sum that stands at `value`.
+    /// A sum that begins at `value`.
     pub fn new(value: SMatrix<S, R, C>) -> Self {
         Self { value, carry: SMatrix::zeros() }
     }
@@ -41,9 +41,9 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
         }
     }
 
-    /// Loses a share of what it is, and adds `increment`.
+    /// Loses a share of its value, and adds `increment`.
     ///
-    /// What is lost is rounded as what there was: where little is left, that would be many digits of it.
+    /// The loss is rounded relative to the old value: where little is left, that would cost many of its digits.
     pub(crate) fn decay(&mut self, lost: S, increment: &SMatrix<S, R, C>) {
         if lost > Real::from_f64(0.5) {
             let kept = S::one() - lost;
@@ -53,12 +53,12 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
         }
     }
 
-    /// By how much the sum is more than `base`, with what it carries.
+    /// The sum, carried error included, less `base`.
     pub(crate) fn beyond(&self, base: &SMatrix<S, R, C>) -> SMatrix<S, R, C> {
         (self.value - base) + self.carry
     }
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     pub fn is_finite(&self) -> bool {
         self.blemish() == S::zero()
     }
@@ -69,13 +69,13 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
     }
 }
 
-/// Whether every element is finite.
+/// True if every element is finite.
 #[inline]
 pub(crate) fn all_finite<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> bool {
     blemish(matrix) == S::zero()
 }
 
-/// The [`blemish`] that stands for a yes or no.
+/// A truth value as a [`blemish`].
 #[inline]
 pub(crate) fn as_blemish<S: Real>(finite: bool) -> S {
     if finite { S::zero() } else { Real::from_f64(f64::NAN) }

@@ -1,8 +1,8 @@
-//! How far an estimate and a sample can be trusted: standard errors, innovations, and samples of which a part is missing.
+//! Standard errors of estimates, innovations of samples, and steps with missing outputs.
 //!
-//! All of it rests on the covariance of the estimator ([`Uncertain`]), which means what it says where the noise of the
-//! regression is that of sensors: with a [`SampledRegression`](crate::SampledRegression), in the [output form](crate::OutputForm) or of a static
-//! regression.
+//! All rests on the covariance of the estimator ([`Uncertain`]), which is correct where the noise of the regression is
+//! that of sensors: with a [`SampledRegression`](crate::SampledRegression), in the [output form](crate::OutputForm) or
+//! of a static regression.
 
 use nalgebra::SVector;
 
@@ -12,13 +12,13 @@ use crate::extension::Extension;
 use crate::regression::{Outcome, Rows};
 use crate::{Estimator, Fault, Model, Real, RegressionOperator, Uncertain};
 
-/// How far a sample is from what the observer expects of it.
+/// The difference between a sample and the observer's prediction of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Innovation<S: Real, const NR: usize> {
     /// Sample less expectation of each row of the regression, in standard deviations of its sensor.
     pub value: SVector<S, NR>,
-    /// The square of the innovation in the norm of its covariance, `e^T (Phi P Phi^T + 1)^-1 e`: on average the number of
-    /// rows, if covariances and model are right.
+    /// The square of the innovation in the norm of its covariance, `e^T (Phi P Phi^T + 1)^-1 e`: on average the number
+    /// of rows, if covariances and model are right.
     pub normalised_square: S,
 }
 
@@ -30,11 +30,11 @@ where
     R: RegressionOperator<M::Scalar, NR, NE>,
 {
     /// The standard error of each state of the estimate: the covariance of the unknown through the derivative of
-    /// `phi_left`, which is taken over one standard error of the unknown to either side, the smaller change counting: an
-    /// angle may come round on the other.
+    /// `phi_left`, which is taken over one standard error of the unknown to either side, the smaller change counting:
+    /// an angle may come round on the other.
     ///
-    /// It is that of the last sample: [`standard_error_after`](Self::standard_error_after) counts what comes later. Of an
-    /// estimate that [`Within`](crate::Within) moves to a bound it is that of the estimate before.
+    /// It is that of the last sample: [`standard_error_after`](Self::standard_error_after) counts the time since. For
+    /// an estimate that [`Within`](crate::Within) moves to a bound it is that of the estimate before.
     ///
     /// None before the first sample, and where `phi_left` has no value one standard error away.
     ///
@@ -43,8 +43,8 @@ where
         self.standard_error_after(nalgebra::zero())
     }
 
-    /// The same of that estimate `dt` seconds later, if no sample has been taken since: by its process noise the unknown has
-    /// drifted, and is known less well.
+    /// The same for that estimate `dt` seconds later, if no sample has been taken since: by its process noise the
+    /// unknown has drifted, and is known less well.
     pub fn standard_error_after(&self, dt: M::Scalar) -> Option<SVector<M::Scalar, NX>> {
         let terms = self.terms.as_ref()?;
         let eta = self.state.estimator.estimate();
@@ -67,8 +67,8 @@ where
         errors.iter().all(|&error| Real::is_finite(error)).then_some(errors)
     }
 
-    /// How far a sample is from what is expected of it, without taking it; to be asked before a [`step`](Self::step) with the
-    /// same arguments. A [`Gate`](crate::Gate) refuses outliers by it.
+    /// The innovation of a sample, without taking it; to be called before a [`step`](Self::step) with the same
+    /// arguments. A [`Gate`](crate::Gate) refuses outliers by it.
     ///
     /// Before the second sample nothing is expected: the innovation is 0.
     ///
@@ -110,11 +110,11 @@ where
     R: RegressionOperator<M::Scalar, NR, NE>,
     R::Step: Rows<M::Scalar, NR>,
 {
-    /// [`step`](Self::step) with a sample of which a part is missing, as of sensors with different periods: an output that is
-    /// not there is NaN. `rows` has for each row of the regression the place in `y` of the output that it is the sensor of.
+    /// [`step`](Self::step) with a sample that lacks outputs, as of sensors with different periods: a missing output is
+    /// NaN. `rows` has for each row of the regression the index in `y` of its output.
     ///
-    /// The rows of missing outputs are left out, and the model's functions get what the observer expects of these outputs, so
-    /// that nothing waits for them. The first sample must be whole.
+    /// The rows of missing outputs are left out, and the model's functions get what the observer expects of these
+    /// outputs, so that nothing waits for them. The first sample must be whole.
     ///
     /// # Errors
     /// A [`Fault`] as of a step; [`Fault::Output`] of an output that is missing and has no row.
@@ -134,7 +134,7 @@ where
         if let Some(index) = (0..NY).find(|output| missing[*output] && !rows.contains(output)) {
             return Err(Fault::Output { index });
         }
-        // What was there last, then what the model makes of it.
+        // The last sample's, then the model's prediction from it.
         (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
         check(&y, &u, dt)?;
         let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;

@@ -1,4 +1,4 @@
-//! Samples of output and input in, the estimate of the unmeasured state out.
+//! The observer: estimates the unmeasured state from samples of outputs and inputs.
 
 mod confidence;
 mod rebasing;
@@ -24,22 +24,22 @@ use rebasing::Rebasing;
 ///
 /// A call gets the output at the *end* of an interval and the input that was held *during* it. The first call has no
 /// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no
-/// effect.
-/// `dt` is the time since the last sample that was accepted; it need not be constant.
+/// effect. `dt` is the time since the last sample that was accepted; it need not be constant.
 ///
 /// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
 ///
 /// # Faults
 ///
 /// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
-/// accepted one, with the time since that one as `dt`; if the input moved meanwhile, a [`Gap`](crate::Gap) says with
-/// what input. Samples that are finite but out of range or saturated are for [`Limits`](crate::Limits) to find before
-/// they get here. The whole state can be saved and restored: [`state`](Self::state).
+/// accepted one, with the time since that one as `dt`; if the input changed meanwhile, a [`Gap`](crate::Gap) has the
+/// mean input. [`Limits`](crate::Limits) find samples that are finite but out of range or saturated, before they get
+/// here. The whole state can be saved and restored: [`state`](Self::state).
 ///
 /// # Re-basing
 ///
-/// `z = xi + Psi theta` says less and less of `z` as `Psi` dies out, and cannot be held as it grows. [`rebasing`](Self::rebasing)
-/// makes the extension start again from the estimate: exact, for every estimator, and for any `Lambda`.
+/// `z = xi + Psi theta` says less and less of `z` as `Psi` dies out, and overflows as it grows.
+/// [`rebasing`](Self::rebasing) makes the extension start again from the estimate: exact, for every estimator, and for
+/// any `Lambda`.
 #[derive(Clone, Debug)]
 pub struct Observer<
     M,
@@ -58,10 +58,10 @@ pub struct Observer<
 {
     model: M,
     state: State<M::Scalar, M::Extension, R, E, NY>,
-    /// What the model's functions need of the last accepted sample; there if and only if that sample is.
+    /// The terms of the last accepted sample; there if and only if that sample is.
     terms: Option<M::Terms>,
-    /// What makes the extension start again, if it does, and the end of a step that does so. That end is
-    /// compiled where re-basing was asked for alone, and what remains of a step without it has no second caller.
+    /// The trigger of re-basing, if there is one, and the end of a step that does so. That end is compiled only where
+    /// re-basing is asked for, and the rest of a step without it has no second caller.
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
 }
 
@@ -173,8 +173,8 @@ where
     /// so, with the time since the state was saved as the next `dt`.
     ///
     /// # Errors
-    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Whether it is undamaged is
-    /// for a checksum to say.
+    /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Other damage is for a
+    /// checksum to find.
     pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY>) -> Result<(), Fault> {
         if !state.is_finite() || state.y.as_ref().is_some_and(|y| !all_finite(y)) {
             return Err(Fault::State);
@@ -204,7 +204,7 @@ where
         self.state.estimator.estimate()
     }
 
-    /// What the model's functions need of the last accepted output; none before the first sample.
+    /// The terms of the last accepted output; none before the first sample.
     pub fn terms(&self) -> Option<&M::Terms> {
         self.terms.as_ref()
     }
@@ -280,7 +280,7 @@ where
         Ok(estimate)
     }
 
-    /// Keeps what an interval led to if all of it and its estimate are finite.
+    /// Keeps the state after an interval if all of it and its estimate are finite.
     #[inline]
     fn accept(
         &mut self,
@@ -363,7 +363,7 @@ where
     }
 }
 
-/// What an interval leads to, before it is accepted.
+/// The state after an interval, before it is accepted.
 struct Next<X, R, E> {
     extension: X,
     regression: R,
@@ -371,7 +371,7 @@ struct Next<X, R, E> {
 }
 
 impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     fn is_finite<const NZ: usize, const NR: usize, const NE: usize>(&self) -> bool
     where
         X: Extension<S, NZ>,
@@ -382,7 +382,7 @@ impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
     }
 }
 
-/// Whether a blemish says that all numbers are finite.
+/// True for the blemish of numbers that are all finite.
 #[inline]
 fn is_none<S: Real>(blemish: S) -> bool {
     blemish == S::zero()

@@ -1,4 +1,4 @@
-//! The same state in other coordinates: what the extension holds of `z`, and what is left to the unknown.
+//! Re-basing: moves an offset or the fundamental matrix from the extension into the unknown.
 //!
 //! `z = xi + Psi theta` holds as well with `xi + Psi c` for `xi` and `theta - c` for `theta`, and with the identity for
 //! `Psi` and `Psi theta` for `theta`. Estimator and regression follow either change, so nothing is lost but rounding.
@@ -10,17 +10,17 @@ use crate::numeric::sum::all_finite;
 use crate::regression::Outcome as _;
 use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator};
 
-/// What makes an observer move what its extension holds of `z`.
+/// The trigger of re-basing.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn<S: Real> {
-    /// So many samples since it did.
+    /// This number of samples since the last time.
     Samples(u32),
-    /// What the extension comes to.
+    /// The size of the extension.
     Drift(Drift<S>),
 }
 
-/// The end of a step of an observer `O` that starts its extension again: from what makes it do so, extension and
-/// regression at the end of the interval, terms and output of the sample, and the interval's time.
+/// The end of a step of an observer `O` that starts its extension again: from its trigger, extension and regression at
+/// the end of the interval, terms and output of the sample, and the interval's time.
 type End<
     O,
     M,
@@ -39,7 +39,7 @@ type End<
     <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
 ) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
 
-/// What makes an observer start its extension again, and the end of a step that does so.
+/// The trigger of re-basing, and the end of a step that does so.
 pub(super) type Rebasing<
     O,
     M,
@@ -52,7 +52,7 @@ pub(super) type Rebasing<
     const NE: usize,
 > = (Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, End<O, M, R, NX, NY, NU, NZ, NR, NE>);
 
-/// What an interval led to, if there was one.
+/// The state after an interval, if there was one.
 type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
 
 type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
@@ -70,19 +70,19 @@ where
     /// xi <- xi + Psi theta_hat        Psi <- I        theta_hat <- 0
     /// ```
     ///
-    /// with the memory of estimator and regression carried over. That changes no estimate by more than rounding, with two
-    /// exceptions, which are the purpose: a gain, a floor of the information and process noise are those of `z` itself
-    /// from then on, and not of what `z` was at the start; and neither a `Psi` that dies out nor one that grows is ever
-    /// held. [`Gradient::carrying_its_gain`](crate::Gradient::carrying_its_gain) and least squares without forgetting
-    /// take their memory along in full.
+    /// with the memory of estimator and regression carried over. That changes no estimate by more than rounding, with
+    /// two exceptions, which are the purpose: a gain, a floor of the information and process noise are those of `z`
+    /// itself from then on, and not of what `z` was at the start; and neither a `Psi` that dies out nor one that grows
+    /// is ever held. [`Gradient::carrying_its_gain`](crate::Gradient::carrying_its_gain) and least squares without
+    /// forgetting take their memory along in full.
     ///
-    /// A filter or window holds regressors of the past, which are carried over by what the model says happened since. Where
-    /// `Psi` dies out, take a bandwidth well above its rate or a window well below its time, or the
-    /// [output form](crate::OutputForm), which holds nothing: what is left of an older past is the model's word alone.
+    /// A filter or window holds regressors of the past, which are carried over by the model's flow since. Where `Psi`
+    /// dies out, take a bandwidth well above its rate or a window well below its time, or the [output
+    /// form](crate::OutputForm), which holds nothing: older regressors rest on the model alone.
     ///
     /// With [`LeastSquares`](crate::LeastSquares), [process noise](crate::LeastSquares::with_process_noise) and every
     /// sample this is a Kalman filter of the transformed plant. In `f32`, at `|Lambda| dt` below 1e-5, take every
-    /// hundredth sample or so: what a turn changes must be seen beside the identity.
+    /// hundredth sample or so: the change of a turn must not be lost beside the identity.
     ///
     /// # Errors
     /// [`Fault::Gain`] if `every` is 0.
@@ -163,7 +163,7 @@ where
         self.move_by_drift(drift, next, (terms, y), dt)
     }
 
-    /// Takes what a sample led to, and moves a shift where the form asks for one.
+    /// Takes the state after a sample, and moves a shift where the form asks for one.
     fn move_by_drift(
         &mut self,
         drift: Drift<M::Scalar>,
@@ -203,8 +203,8 @@ where
         self.move_by_drift(drift, Some(Next { extension, regression, estimator }), sample, dt)
     }
 
-    /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's step,
-    /// so process noise is that of the moment.
+    /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's
+    /// step, so process noise is that of the moment.
     fn end_rebasing(
         &mut self,
         turn: Turn<M::Scalar>,
@@ -218,8 +218,8 @@ where
         if moved.since >= every {
             moved.onto_estimate()?;
             moved.since = 0;
-            // A regression whose past dies out more slowly than `Psi` grows without end in the coordinates of the moment.
-            // Started again it holds as well.
+            // A regression whose past dies out more slowly than `Psi` grows without end in the coordinates of the
+            // moment. Started again it holds as well.
             let most = largest_regressor::<M::Scalar>();
             if moved.regression.regressor().iter().any(|&entry| Real::abs(entry) > most) {
                 moved.regression.reset();

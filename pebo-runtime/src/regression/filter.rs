@@ -1,4 +1,4 @@
-//! A signal's samples in, the signal through `alpha / (p + alpha)` out: exact between the samples for the hold chosen.
+//! Filters samples of a signal by `alpha / (p + alpha)`, exactly between the samples for the hold chosen.
 //!
 //! With `a = alpha dt`, a filter at `f` whose input runs from `x0` to `x1` over the step arrives at
 //!
@@ -6,14 +6,14 @@
 //! f + (1 - e^-a) (x0 - f) + (1 - (1 - e^-a)/a) (x1 - x0)
 //! ```
 //!
-//! (variation of constants; without the last term for an input held at `x0`). Exact at any step, so neither a huge nor a
-//! tiny `alpha dt` is a special case, and two half steps along a straight input are one whole step.
+//! (variation of constants; without the last term for an input held at `x0`). Exact at any step, so neither a huge nor
+//! a tiny `alpha dt` is a special case, and two half steps along a straight input are one whole step.
 
 use nalgebra::SMatrix;
 
 use crate::{Fault, Real, Sum};
 
-/// How a signal is taken to run between two samples.
+/// The course of a signal between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Hold {
@@ -29,18 +29,18 @@ pub enum Hold {
 pub struct Filter<S: Real> {
     alpha: S,
     hold: Hold,
-    /// Those of the last step: sampling is periodic as a rule, and they cost an exponential.
+    /// The weights of the last step: sampling is periodic as a rule, and they cost an exponential.
     weights: Weights<S>,
 }
 
-/// What one step of a filter needs to know: how far it follows its input.
+/// The weights of one step of a filter: how far it follows its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Weights<S: Real> {
     dt: S,
-    /// On what the input is away from the filter at the start of the step: `1 - e^-a`.
+    /// Of the distance between input and filter at the start of the step: `1 - e^-a`.
     level: S,
-    /// On what the input changes during the step: `1 - (1 - e^-a)/a`.
+    /// Of the change of the input during the step: `1 - (1 - e^-a)/a`.
     slope: S,
 }
 
@@ -68,12 +68,13 @@ impl<S: Real> Filter<S> {
 }
 
 impl<S: Real> Weights<S> {
-    /// The weights on what the input is away from the filter at the start of the step, and on what it changes during it.
+    /// The weights of the distance between input and filter at the start of the step, and of the input's change during
+    /// it.
     pub(crate) fn level_and_slope(&self) -> (S, S) {
         (self.level, self.slope)
     }
 
-    /// Values in and out, and a call: what a step of the usual length computes stays in registers.
+    /// Passes values, so that the results of a step of the usual length stay in registers.
     #[cold]
     #[inline(never)]
     fn new(alpha: S, hold: Hold, dt: S) -> Self {
@@ -92,8 +93,8 @@ fn slope<S: Real>(a: S, level: S) -> S {
     if a > S::one() {
         return S::one() - level / a;
     }
-    // The difference would cancel: its series a/2! - a^2/3! + a^3/4! - .. is summed inwards instead. The first term left
-    // out is below a/20! < 1e-18 of the sum.
+    // The difference would cancel: its series a/2! - a^2/3! + a^3/4! - .. is summed inwards instead. The first term
+    // left out is below a/20! < 1e-18 of the sum.
     let series = (3..20_u8).rev().fold(S::one(), |tail, k| {
         let k: S = Real::from_f64(f64::from(k));
         S::one() - a / k * tail
@@ -110,7 +111,7 @@ pub struct Filtered<S: Real, const R: usize, const C: usize> {
 }
 
 impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
-    /// A filter whose output stands at `output`.
+    /// A filter whose output is `output`.
     pub fn new(output: SMatrix<S, R, C>) -> Self {
         Self { output: Sum::new(output) }
     }
@@ -131,7 +132,7 @@ impl<S: Real, const R: usize, const C: usize> Filtered<S, R, C> {
         self.output.add(offset);
     }
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     pub fn is_finite(&self) -> bool {
         self.output.is_finite()
     }

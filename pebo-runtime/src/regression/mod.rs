@@ -1,8 +1,8 @@
-//! Samples of both sides of the regression in, a regression without derivatives out: `regressand = regressor * eta`.
+//! Operators that make a regression without derivatives, `regressand = regressor * eta`, of samples of both sides.
 //!
 //! Both sides of `d/dt primitive_0 - phi_0 = (phi_1 - d/dt primitive_1) eta` go through the same linear operator, which
-//! starts with nothing: the paper's decaying term epsilon is exactly 0. Between two samples a primitive runs straight,
-//! so its derivative is the difference quotient; no signal is differentiated otherwise.
+//! starts at zero: the paper's decaying term epsilon is exactly 0. Between two samples a primitive runs straight, so
+//! its derivative is the difference quotient; no signal is differentiated otherwise.
 //!
 //! - [`FilteredRegression`]: the operator is a [`Filter`];
 //! - [`WindowedRegression`]: the mean over a window, the integral form;
@@ -19,22 +19,21 @@ pub use filter::{Filter, Filtered, Hold, Weights};
 pub use sampled::SampledRegression;
 pub use window::{Moved, WindowedRegression};
 
-/// Both sides of `known = factor * eta` at one instant; of a model, `phi_0` and `phi_1`, or what stands under their
-/// derivative.
+/// Both sides of `known = factor * eta` at one instant; of a model, `phi_0` and `phi_1`, or its primitives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides<S: Real, const NR: usize, const NE: usize> {
-    /// What is known, in units of the regression's equations.
+    /// The known side, in units of the regression's equations.
     pub known: SVector<S, NR>,
     /// The factor of the unknown.
     pub factor: SMatrix<S, NR, NE>,
 }
 
-/// A linear operator in time, applied to both sides of a regression: what holds at every instant holds for its outcome.
+/// A linear operator in time, applied to both sides of a regression: the equation holds for its outcome too.
 ///
 /// A step is first worked out and then taken, so that an [`Observer`](crate::Observer) can refuse it without a copy of
 /// the whole memory.
 pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
-    /// A step that is worked out: its outcome, and what it takes to take it.
+    /// A step that is worked out: its outcome, and the state behind it.
     type Step: Outcome<S, NR, NE>;
 
     /// The step over `dt` seconds in which both sides run straight from the first to the second.
@@ -59,11 +58,11 @@ pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Starts again with nothing: `0 = 0 eta`.
     fn reset(&mut self);
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     fn is_finite(&self) -> bool;
 }
 
-/// What a step of a [`RegressionOperator`] leads to: `regressand = regressor eta`.
+/// The outcome of a step of a [`RegressionOperator`]: `regressand = regressor eta`.
 pub trait Outcome<S: Real, const NR: usize, const NE: usize> {
     /// The known side.
     fn regressand(&self) -> SVector<S, NR>;
@@ -75,12 +74,12 @@ pub trait Outcome<S: Real, const NR: usize, const NE: usize> {
     fn blemish(&self) -> S;
 }
 
-/// An outcome of samples, of which rows may be left out.
+/// An outcome of samples whose rows may be left out.
 pub trait Rows<S: Real, const NR: usize> {
-    /// By what the rows of the regression are multiplied, `dt` seconds after the sample before.
+    /// The factors of the rows of the regression, `dt` seconds after the sample before.
     fn weights(&self, dt: S) -> SVector<S, NR>;
 
-    /// The same outcome without these rows, of which it then says nothing.
+    /// The same outcome without these rows.
     #[must_use]
     fn without(self, left_out: &[bool; NR]) -> Self;
 }

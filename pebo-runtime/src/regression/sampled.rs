@@ -1,4 +1,4 @@
-//! Each sample of the regression by itself, weighed by what its sensors are worth.
+//! Takes each sample of the regression by itself, weighted by the standard deviations of its sensors.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,10 +8,10 @@ use crate::{Fault, Real, Turn};
 
 /// The sides of the regression at each sample, row `i` divided by `s_i sqrt(dt)`.
 ///
-/// Holds when: the regressand is what sensors say, as in the [output form](crate::OutputForm) or in a static regression
-/// whose rows are outputs, and row `i` has independent errors of standard deviation `s_i` in each sample. Then the
-/// covariance of [`LeastSquares`](crate::LeastSquares) without forgetting is that of the unknown, in its units squared,
-/// and process noise is in these units per second: together a Kalman filter.
+/// Holds when: the regressand is the sensors' samples, as in the [output form](crate::OutputForm) or in a static
+/// regression whose rows are outputs, and row `i` has independent errors of standard deviation `s_i` in each sample.
+/// Then the covariance of [`LeastSquares`](crate::LeastSquares) without forgetting is that of the unknown, in its units
+/// squared, and process noise is in these units per second: combined a Kalman filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SampledRegression<S: Real, const NR: usize, const NE: usize> {

@@ -28,12 +28,12 @@ pub struct WindowedRegression<S: Real, const NR: usize, const NE: usize, const N
     /// Integrals over the steps in the window, in a ring.
     #[cfg_attr(feature = "serde", serde(with = "crate::array"))]
     steps: [Integral<S, NR, NE>; NW],
-    /// Where the oldest step is, and the next will be.
+    /// The index of the oldest step, which the next one replaces.
     oldest: usize,
     /// Over the window.
     total: Total<S, NR, NE>,
-    /// Over the steps at the front of the ring, since it was last begun. Full, it becomes the total: so what was lost
-    /// beside an outlier is not lost for ever.
+    /// Over the steps at the front of the ring, since it was last begun. Full, it becomes the total: so digits lost
+    /// beside an outlier are not lost for ever.
     front: Total<S, NR, NE>,
 }
 
@@ -132,7 +132,7 @@ impl<S: Real, const NR: usize, const NE: usize> Outcome<S, NR, NE> for Moved<S, 
     }
 
     fn blemish(&self) -> S {
-        // What is not finite in the step makes the total so.
+        // A step that is not finite makes the total so.
         as_blemish(self.total.is_finite() && self.front.is_finite())
     }
 }

@@ -1,14 +1,13 @@
-//! Intervals without a usable output, and the input over all of them.
+//! Joins intervals without a usable output into one, with the mean of their inputs.
 
 use nalgebra::SVector;
 
 use crate::{Real, Sum};
 
-/// What happened since the last accepted sample: time, and the integral of the input.
+/// The time since the last accepted sample, and the integral of the input over it.
 ///
-/// Tell it every interval; when a good sample ends one, [`step`](crate::Observer::step) the observer by what it covers.
-/// An observer then covers the whole gap with the mean of its inputs, exact to second order where `h` is affine in the
-/// input.
+/// Add every interval; when a good sample ends one, [`step`](crate::Observer::step) the observer with the mean input
+/// and the time that [`take`](Self::take) returns. That is exact to second order where `h` is affine in the input.
 ///
 /// ```
 /// # use pebo_runtime::{Gap, nalgebra::SVector};
@@ -31,8 +30,8 @@ impl<S: Real, const NU: usize> Gap<S, NU> {
         Self { time: Sum::new(SVector::zeros()), input: Sum::new(SVector::zeros()) }
     }
 
-    /// Adds an interval of `dt` seconds with the input `u`. What is not finite or not positive in it is for the
-    /// observer to refuse.
+    /// Adds an interval of `dt` seconds with the input `u`. Numbers that are not finite, and a time that is not
+    /// positive, are for the observer to refuse.
     pub fn add(&mut self, u: &SVector<S, NU>, dt: S) {
         self.time.add(&SVector::repeat(dt));
         self.input.add(&(u * dt));

@@ -1,14 +1,14 @@
-//! Samples that nobody can believe, refused.
+//! Refuses outliers.
 
 use crate::{Fault, Innovation, Real};
 
 /// Refuses outliers: samples whose [normalised square](Innovation::normalised_square) is above a limit.
 ///
-/// Of independent sensors with normal errors that square is chi-squared: on average as large as the number of rows, and of
-/// one row above 9 in 0.3 %, above 25 in 0.00006 % of all samples.
+/// With independent sensors and normal errors that square is chi-squared: its mean is the number of rows; with one row
+/// it is above 9 in 0.3 %, above 25 in 0.00006 % of all samples.
 ///
-/// After as many refusals in a row as it is patient, the gate believes the samples, and not the model: the next one passes,
-/// so that an observer that has lost its state finds it again.
+/// After as many refusals in a row as it is patient, the gate believes the samples, and not the model: the next one
+/// passes, so that an observer that has lost its state finds it again.
 ///
 /// ```
 /// # use pebo_runtime::{Fault, Gate, Innovation, nalgebra::SVector};
@@ -39,7 +39,7 @@ impl<S: Real> Gate<S> {
         if positive { Ok(Self { limit, patience, refused: 0 }) } else { Err(Fault::Limits) }
     }
 
-    /// Whether the sample of this innovation may pass.
+    /// Lets the sample of this innovation pass, or refuses it.
     ///
     /// # Errors
     /// [`Fault::Outlier`] if not.

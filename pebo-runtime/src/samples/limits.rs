@@ -1,4 +1,4 @@
-//! What a sample may be: ranges that the application knows and the numbers themselves do not.
+//! Ranges of samples, which only the application knows.
 
 use nalgebra::SVector;
 
@@ -73,7 +73,7 @@ impl<S: Real, const NY: usize, const NU: usize> Limits<S, NY, NU> {
         if longest > S::zero() { Ok(Self { gap: Some(longest), ..self }) } else { Err(Fault::Limits) }
     }
 
-    /// Whether a sample is one that an observer may be given.
+    /// Checks a sample before an observer gets it.
     ///
     /// # Errors
     /// [`Fault::OutputRange`], [`Fault::InputRange`] or [`Fault::Gap`], in this order. A NaN is not in any range.

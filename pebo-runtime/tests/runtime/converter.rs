@@ -154,7 +154,7 @@ impl<S: Real> Model<2, 2, 1, 2, 2, 2> for CaseTwoGeneralised<S> {
 
 impl<S: Real> Rebase<2, 2, 1, 2, 2> for CaseTwoGeneralised<S> {}
 
-/// How a measurement case reads the circuit state (i1, v2, i3, v4).
+/// A measurement case: its view of the circuit state (i1, v2, i3, v4).
 pub(crate) trait Case<S: Real>: Model<2, 2, 1, 2, 2, 2, Scalar = S, X = Vector2<S>> {
     fn new() -> Self;
     /// The measured pair.
@@ -277,7 +277,7 @@ impl<S: Real, M: Case<S>> Loop<S, M> {
 
     /// One sample interval.
     pub(crate) fn advance(&mut self) -> Result<(), Fault> {
-        // The controller computes in the observer's precision: the plant gets what the observer was told.
+        // The controller computes in the observer's precision: plant and observer get the same input.
         self.d = Real::to_f64(real::<S>(self.d));
         self.circuit = circuit::advance(&self.circuit, self.d, self.dt);
         self.steps += 1;

@@ -12,7 +12,8 @@ fn step<S: Real>(alpha: S, hold: Hold, output: S, inputs: [S; 2], dt: S) -> S {
     filtered.value().x
 }
 
-/// The integral of `a e^(-a (1 - s)) (x0 + (x1 - x0) s)` over 0..1 by Gauss-Legendre quadrature of 3 points on 256 panels.
+/// The integral of `a e^(-a (1 - s)) (x0 + (x1 - x0) s)` over 0..1 by Gauss-Legendre quadrature of 3 points on 256
+/// panels.
 fn convolution(a: f64, x0: f64, x1: f64) -> f64 {
     let node = 0.6_f64.sqrt();
     let mut sum = 0.0;
@@ -30,7 +31,8 @@ proptest! {
     fn step_is_the_convolution(
         alpha in decades(-6, 6), a in decades(-9, 1), output in -1.0..1.0, x0 in -1.0..1.0, x1 in -1.0..1.0,
     ) {
-        // Quadrature error of one panel: (a/256)^6/2e6 < 2e-15 of the integrand at a = 10; rounding of its 768 terms 1e-14.
+        // Quadrature error of one panel: (a/256)^6/2e6 < 2e-15 of the integrand at a = 10; rounding of its 768 terms
+        // 1e-14.
         let tolerance = 2e-14;
         let decayed = output * (-a).exp();
         let first = step(alpha, Hold::First, output, [x0, x1], a / alpha);

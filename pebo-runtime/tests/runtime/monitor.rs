@@ -93,7 +93,7 @@ fn singular_and_bad_data() {
 }
 
 #[test]
-fn what_has_converged_has_a_standard_error() {
+fn a_converged_unknown_has_a_standard_error() {
     // A flux of 1 mWb beside a speed of 1000 rad/s in single precision: the two entries of the Gramian are 1e12 apart.
     let wanted = Vector2::new(1.0_f32, 1.0);
     let mut monitor = Monitor::of_white(&wanted, &Vector1::new(1e-3), 0.0).unwrap();
@@ -168,7 +168,7 @@ fn monte_carlo(alpha: f64, beta: f64, steps: u32) -> Vector2<f64> {
 }
 
 #[test]
-fn standard_error_of_an_observer_is_what_sensors_and_filter_make_of_it() {
+fn standard_error_of_an_observer_follows_from_sensors_and_filter() {
     for (alpha, beta, steps) in [(200.0, 0.0, 600), (20.0, 0.0, 600), (200.0, 10.0, 600), (f64::INFINITY, 0.0, 300)] {
         let ratio = monte_carlo(alpha, beta, steps);
         println!("Monte Carlo over monitor, filter {alpha}, forgetting {beta}: {:.3} {:.3}", ratio.x, ratio.y);

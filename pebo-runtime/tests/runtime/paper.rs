@@ -114,15 +114,15 @@ fn generalised_observer_agrees_with_the_cascade_one() {
     // Equal but for rounding, which the loop feeds back, in the first 10 ms.
     assert!((cascade.error().x - generalised.error().x).abs() < 1e-9);
     generalised.run(0.02).unwrap();
-    // What sampling leaves, second order: (2132 rad/s * dt)^2/12 = 4e-5 of a ripple that is itself below the state.
+    // The error of sampling, second order: (2132 rad/s * dt)^2/12 = 4e-5 of a ripple that is itself below the state.
     let error = generalised.error().component_div(&initial);
     assert!(error.abs().max() < 4e-5, "{error}");
 }
 
 #[test]
 fn single_precision_follows_the_reference() {
-    // A step of 1e-6 s is the hard one: alpha dt = 5e-7 is 8 times the resolution of f32, and sums that lose what does not
-    // fit end percents away. What remains: 20 roundings of numbers relative to the initial error.
+    // A step of 1e-6 s is the hard one: alpha dt = 5e-7 is 8 times the resolution of f32, and sums that lose what does
+    // not fit end percents away. What remains: 20 roundings of numbers relative to the initial error.
     let mut closed = Loop::<f32, CaseOne<f32>>::new(0.5, [0.001, 0.001], 1e-6).unwrap();
     closed.run(0.05).unwrap();
     let error = closed.error() - Vector2::new(-0.159_374_94, 0.026_149_012_8);

@@ -1,14 +1,14 @@
-//! The control law: which estimates it sees, and what it does with them.
+//! The control law, and the source of its estimates.
 
 use pebo_cas::Expr;
 use pebo_design::model::Simulation;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
-use super::layout::{rival_estimates, time};
-use super::overrides::Overrides;
+use super::layout::{baseline_estimates, time};
 use super::scope::{Estimates, Names, Sight, View};
+use crate::overrides::Overrides;
 
-/// Whose estimates the control law sees.
+/// The source of the control law's estimates.
 pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diagnostics) -> Option<String> {
     let simulation = names.simulation;
     let written = simulation.feedback.as_ref();
@@ -37,23 +37,24 @@ pub(crate) fn feedback(names: &Names, overrides: &Overrides, problems: &mut Diag
     None
 }
 
-/// What `hat(x)` is in the control law.
-fn seen(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
+/// The values of `hat(x)` in the control law.
+fn visible_estimates(names: &Names, feedback: &str, hats: &Estimates) -> Estimates {
     let arena = &names.plant.arena;
     match feedback {
         Simulation::OBSERVER => hats.clone(),
         Simulation::TRUTH => names.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol))).collect(),
         name => {
             let baseline = names.simulation.baselines.iter().find(|entry| entry.name.value == name);
-            let estimates = baseline.into_iter().flat_map(|entry| rival_estimates(names.plant, entry));
+            let estimates = baseline.into_iter().flat_map(|entry| baseline_estimates(names.plant, entry));
             estimates.map(|(x, estimate)| (x, arena.of_symbol(estimate))).collect()
         }
     }
 }
 
-/// The inputs in outputs, estimates and signals; the time, which is the last of them, is as it is.
+/// The inputs in outputs, estimates and signals; the time, if it is the last input, is the true one.
 pub(crate) fn law(names: &Names, feedback: &str, hats: &Estimates, problems: &mut Diagnostics) -> Vec<Expr> {
-    let scope = names.scope(&View { sight: Sight::Outputs, hats: seen(names, feedback, hats), ..View::default() });
+    let scope =
+        names.scope(&View { sight: Sight::Outputs, hats: visible_estimates(names, feedback, hats), ..View::default() });
     let (plant, arena) = (names.plant, &names.plant.arena);
     let wanted: Vec<_> = plant.commanded().collect();
     let mut inputs = names.entries(&scope, &wanted, ("control", &names.simulation.control), problems);

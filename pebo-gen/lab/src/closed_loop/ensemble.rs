@@ -1,7 +1,7 @@
-//! Many runs of one scenario, which differ in chance alone.
+//! Many runs of one scenario that differ in their random numbers alone.
 //!
-//! In: the number of runs; they have the seeds `seed`, `seed + 1`, .. Out: how the estimates are spread over the runs, in
-//! time and as a table. Of each run a few hundred numbers are kept, and not its trace.
+//! In: the number of runs; they have the seeds `seed`, `seed + 1`, .. Out: the spread of the estimates over the runs,
+//! in time and as a table. Keeps a few hundred numbers of each run, not its trace.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -13,63 +13,63 @@ use pebo_design::source::Diagnostic;
 
 use super::failure::Failure;
 use super::layout::TIME;
-use super::panel::Panel;
 use super::scenario::Scenario;
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use crate::figure::{Band, Sheet};
 use crate::summary::{Estimate, Summary, short, table};
 use crate::timing::real;
 
-/// Spans of time, of each of which the largest error is kept: more than a figure shows apart.
+/// Spans of time, each with its largest error: more than a figure resolves.
 const SPANS: u64 = 400;
 
-/// Errors that are kept of all runs together.
+/// The most errors that are kept of all runs combined.
 const MOST_ERRORS: u64 = 20_000_000;
 
 /// Spans of time that a figure needs at least.
 const FEWEST_SPANS: u64 = 40;
 
-/// How estimates are spread over many runs.
+/// The spread of estimates over many runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ensemble {
     /// The seed of the first run.
     pub seed: u64,
     /// The number of runs.
     pub runs: u64,
-    /// When they ended, in seconds.
+    /// The time of their end, in seconds.
     pub end: f64,
     /// The estimates of the model's observer, then those of each baseline.
     pub estimates: Vec<Spread>,
     /// The runs that stopped before their end; their errors count as infinite.
     pub stopped: u64,
-    /// Why the first of these stopped.
+    /// The reason of the first of these.
     pub reason: Option<String>,
-    /// The first run in which an estimate of the model's observer did not settle, and how many these are.
+    /// The number of runs in which an estimate of the model's observer did not settle, and the first of them.
     #[serde(skip)]
     pub(crate) unsettled: (u64, Option<Summary>),
     #[serde(skip)]
-    pub(crate) courses: Vec<Course>,
+    pub(crate) courses: Vec<ErrorCourse>,
 }
 
-/// How the estimate of a state is spread over the runs; a number that most runs or a tenth of them do not have is absent.
+/// The spread of a state's estimate over the runs; a number that most runs or a tenth of them lack is absent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// Whose estimate, and of what.
+    /// The estimate.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// When it settles, in seconds; see [`Score::settled`](crate::Score::settled).
+    /// The time at which it settles, in seconds; see [`Score::settled`](crate::Score::settled).
     pub settled: Quantiles,
     /// The runs in which it does not settle.
     pub unsettled: u64,
     /// The root mean square of its error from then on.
     pub rms: Quantiles,
-    /// The largest magnitude of its error from then on.
+    /// The largest absolute value of its error from then on.
     pub worst: Quantiles,
-    /// The root mean square that the observer's numbers come to, from then on; absent where they are not known.
+    /// The root mean square that the observer predicts, from then on; absent where its numbers are not known.
     pub expected: Quantiles,
 }
 
-/// What half of the runs, and nine tenths of them, do not exceed.
+/// The median and the quantile of 90 % over the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Quantiles {
     /// The median.
@@ -79,14 +79,14 @@ pub struct Quantiles {
 }
 
 /// The largest error in each span of time: instants, each with the quantiles of 10, 50 and 90 %.
-pub(crate) type Course = Vec<(f64, [f64; 3])>;
+pub(crate) type ErrorCourse = Vec<(f64, [f64; 3])>;
 
 impl Scenario {
-    /// Runs the loop so many times, with the seed of the scenario and those after it, for a caller who is told now and then
-    /// which part is done and may end it there.
+    /// Runs the loop `runs` times, with the seed of the scenario and those after it. `progress` gets the finished share
+    /// now and then, and may end the runs.
     ///
     /// # Errors
-    /// That the caller ended it, and the reason of the first run if all stop before their end.
+    /// [`Failure::Stopped`] if the caller ended it, and the reason of the first run if all stop before their end.
     pub fn run_often(
         &mut self,
         runs: u64,
@@ -99,8 +99,8 @@ impl Scenario {
             self.seed = seed.wrapping_add(run);
             let mut peaks = pool.empty();
             let followed = self.follow(
-                &mut |sample, shown| {
-                    pool.spans.keep(&mut peaks, (sample, shown.table[TIME]), shown.errors);
+                &mut |sample, snapshot| {
+                    pool.spans.keep(&mut peaks, (sample, snapshot.table[TIME]), snapshot.errors);
                 },
                 &mut |done| progress((real(run) + done) / real(runs)),
             );
@@ -117,7 +117,7 @@ impl Scenario {
         pool.finish(seed, runs, self)
     }
 
-    /// The same of many runs, of which at least one did not.
+    /// The advice on many runs, if an estimate did not settle in at least one.
     pub fn advise_on(&self, ensemble: &Ensemble) -> Option<Diagnostic> {
         let (count, first) = &ensemble.unsettled;
         let diagnostic = self.advise(first.as_ref()?)?;
@@ -147,12 +147,12 @@ impl Spans {
     }
 }
 
-/// What is kept of the runs.
+/// The numbers that are kept of the runs.
 #[derive(Debug)]
 struct Pool {
     spans: Spans,
     estimates: usize,
-    /// Of each estimate, span and run.
+    /// By estimate, span and run.
     peaks: Vec<Vec<Vec<f64>>>,
     summaries: Vec<Vec<[f64; 4]>>,
     first: Option<Summary>,
@@ -163,7 +163,7 @@ struct Pool {
 
 impl Pool {
     fn new(scenario: &Scenario, runs: u64) -> Self {
-        let estimates = scenario.judged.len();
+        let estimates = scenario.scored.len();
         let room = MOST_ERRORS / runs / u64::try_from(estimates).unwrap_or(1).max(1);
         let samples = scenario.timing.samples;
         let count = room.clamp(FEWEST_SPANS, SPANS).min(samples + 1);
@@ -180,7 +180,7 @@ impl Pool {
         }
     }
 
-    /// No errors yet, of each estimate and span.
+    /// Zero errors for each estimate and span.
     fn empty(&self) -> Vec<Vec<f64>> {
         vec![vec![0.0; self.spans.count]; self.estimates]
     }
@@ -189,9 +189,9 @@ impl Pool {
         for (all, run) in self.peaks.iter_mut().zip(peaks) {
             all.iter_mut().zip(run).for_each(|(all, peak)| all.push(peak));
         }
-        for (all, rated) in self.summaries.iter_mut().zip(&summary.estimates) {
-            let score = rated.score;
-            let expected = rated.expected.unwrap_or(f64::INFINITY);
+        for (all, scored) in self.summaries.iter_mut().zip(&summary.estimates) {
+            let score = scored.score;
+            let expected = scored.expected.unwrap_or(f64::INFINITY);
             all.push([score.settled.unwrap_or(f64::INFINITY), score.rms, score.worst, expected]);
         }
         if !summary.unsettled().is_empty() {
@@ -212,7 +212,7 @@ impl Pool {
         let Some(first) = self.first else {
             return Err(self.failure.unwrap_or(Failure::Stopped { at: 0.0 }));
         };
-        let course = |spans: Vec<Vec<f64>>| -> Course {
+        let course = |spans: Vec<Vec<f64>>| -> ErrorCourse {
             let sorted = spans.into_iter().map(|mut all| quantiles(&mut all, [0.1, 0.5, 0.9]));
             self.spans.ends.iter().copied().zip(sorted).collect()
         };
@@ -226,7 +226,7 @@ impl Pool {
             let unsettled = all.iter().fold(0, |count, row| count + u64::from(!row[0].is_finite()));
             Spread { estimate, settled: of(0), unsettled, rms: of(1), worst: of(2), expected: of(3) }
         };
-        let estimates = scenario.judged.iter().map(|judged| judged.estimate.clone());
+        let estimates = scenario.scored.iter().map(|scored| scored.estimate.clone());
         let ensemble = Ensemble {
             seed,
             runs,
@@ -257,7 +257,7 @@ impl Ensemble {
         let name = |what: &str| [format!("{what}, median"), "90 %".to_owned()];
         let [settled, rms, worst] = ["settled to 1 %", "rms then", "worst then"].map(name);
         let heading = ["error of".to_owned()].into_iter().chain([settled, rms, worst].into_iter().flatten());
-        // A column that nobody has anything in is none.
+        // An empty column is left out.
         let is_known = self.estimates.iter().any(|spread| spread.expected.median.is_some());
         let known = |text: String| if is_known { text } else { String::new() };
         let mut rows: Vec<[String; 9]> = Vec::new();
@@ -289,7 +289,7 @@ impl Ensemble {
         text
     }
 
-    /// The largest error in each span of time as CSV: `t`, and of each estimate the quantiles of 10, 50 and 90 %.
+    /// The largest error in each span of time as CSV: `t`, and for each estimate the quantiles of 10, 50 and 90 %.
     pub fn csv(&self) -> String {
         let names = self.estimates.iter().map(|spread| spread.estimate.name());
         let columns = names.flat_map(|name| ["10", "50", "90"].map(|share| format!("{name}_error_{share}")));
@@ -302,8 +302,8 @@ impl Ensemble {
         lines.join("\n") + "\n"
     }
 
-    /// The figure: of each state the largest error in each span of time, its median over the runs and the band that eight
-    /// tenths of them lie in, for the model's observer and for each baseline.
+    /// The figure: for each state the largest error in each span of time, its median over the runs and the band of 10
+    /// to 90 %, for the model's observer and for each baseline.
     pub fn figure(&self, scenario: &Scenario) -> String {
         let mut states: Vec<&str> = Vec::new();
         for spread in &self.estimates {

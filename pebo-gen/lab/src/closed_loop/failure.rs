@@ -1,4 +1,4 @@
-//! Why a run could not go on: a fact, and its wording.
+//! The reasons why a run stops early, and their wording.
 
 use std::fmt;
 
@@ -13,52 +13,52 @@ pub enum Failure {
     NotFinite {
         /// Its name.
         name: String,
-        /// When, in seconds.
+        /// The time, in seconds.
         at: f64,
     },
     /// A state of the plant or of a baseline runs away.
     Diverged {
         /// Its name.
         name: String,
-        /// The last magnitude of it.
+        /// Its last absolute value.
         value: f64,
-        /// When, in seconds.
+        /// The time, in seconds.
         at: f64,
     },
-    /// The integrator came to a stand: its steps became too short or too many.
+    /// The integrator came to a standstill: its steps became too short or too many.
     Stuck {
-        /// When, in seconds.
+        /// The time, in seconds.
         at: f64,
-        /// The steps that it has taken from one sample to the next.
+        /// The steps that it took from one sample to the next.
         steps: u64,
     },
-    /// The integrator gets on, but the run would take it too long.
+    /// The run would take the integrator too long.
     Slow {
-        /// When that was known, in seconds.
+        /// The time in the run at which that was known, in seconds.
         at: f64,
-        /// The steps that it has taken until then.
+        /// The steps that it took until then.
         steps: u64,
-        /// The state that moves fastest there.
+        /// The fastest state there.
         fastest: String,
         /// Its time constant there, in seconds.
         constant: f64,
     },
     /// The observer refused a sample.
     Refused {
-        /// When, in seconds.
+        /// The time, in seconds.
         at: f64,
-        /// Why.
+        /// The fault.
         fault: Fault,
     },
     /// The caller ended the run.
     Stopped {
-        /// When, in seconds of the run.
+        /// The time in the run, in seconds.
         at: f64,
     },
 }
 
 impl Failure {
-    /// What to do about it.
+    /// The help for the user.
     pub fn help(&self) -> &'static str {
         match self {
             Self::NotFinite { .. } => {

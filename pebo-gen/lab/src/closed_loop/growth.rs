@@ -1,13 +1,13 @@
-//! Which state of a loop grows without end, from its values sample by sample.
+//! Finds a state of a loop that grows without end, from its values sample by sample.
 //!
-//! In: the state at each sample. Out: when the loop cannot go on, the component that has grown most beyond what it was in the
-//! first half of the run, if any has grown far beyond. Keeps two numbers for each component.
+//! In: the state at each sample. Out: when the loop cannot go on, the component that has grown most beyond its peak in
+//! the first half of the run, if any has grown far beyond. Keeps two numbers for each component.
 
-/// Beyond this many times what it was in the first half of the run, a state runs away: a plant in operation moves within what
-/// its start has shown by much less.
+/// A state runs away beyond this multiple of its peak in the first half of the run: a plant in operation exceeds the
+/// range of its start by much less.
 const FAR: f64 = 1e3;
 
-/// The largest magnitudes of a state so far.
+/// The largest absolute values of a state so far.
 #[derive(Clone, Debug)]
 pub(crate) struct Growth {
     /// Up to the last sample whose number is a power of two.
@@ -41,7 +41,7 @@ impl Growth {
     pub(crate) fn away(&self, state: &[f64]) -> Option<(usize, f64)> {
         // A quarter to a half of the run: the last power of two may be the very last sample.
         let grown = |(place, value): (usize, &f64)| {
-            // Of what has been zero so far nobody knows its size: one of its unit.
+            // A component that has been zero so far has no known size: take one of its unit.
             let before = if self.earlier[place] > 0.0 { self.earlier[place] } else { 1.0 };
             let last = if value.is_finite() { value.abs() } else { self.so_far[place] };
             (place, last, last / before)
@@ -57,13 +57,13 @@ mod tests {
     use super::Growth;
 
     #[test]
-    fn what_grows_without_end_is_named_and_what_swings_is_not() {
+    fn unbounded_growth_is_named_and_swinging_is_not() {
         let mut growth = Growth::new(&[1.0, 0.1]);
         for sample in 1..=200_u32 {
             growth.add(&[f64::from(sample).sin(), 0.1 * (f64::from(sample) / 5.0).exp()]);
         }
         assert!(matches!(growth.away(&[1.0, 1e17]), Some((1, value)) if value > 1e16));
-        // Not finite any more: what it had come to.
+        // No longer finite: its last finite peak.
         assert!(matches!(growth.away(&[1.0, f64::NAN]), Some((1, value)) if value > 1e15));
         let mut swings = Growth::new(&[0.0]);
         (1..500_u32).for_each(|sample| swings.add(&[f64::from(sample).sin()]));

@@ -1,41 +1,43 @@
-//! One table for all values of an instant.
+//! The table with all values of an instant.
 //!
-//! Every formula of a run reads its symbols from this table, so that what one formula computes is
-//! where the next one looks for it.
+//! Every formula of a run reads its symbols from this table, so that the values of one formula are where the next one
+//! looks for them.
 
 use std::ops::Range;
 
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::model::{Baseline, Entry, Simulation};
 use pebo_design::plant::Plant;
-use pebo_design::program::{Program, lower};
-use pebo_design::source::{Code, Diagnostic, Span};
+use pebo_design::program::Program;
+use pebo_design::source::{Diagnostic, Span};
+
+use crate::observe::design::program;
 
 /// The position of time.
 pub(crate) const TIME: usize = 0;
 
-/// Which value stands where: time; x, y and the baselines' states, which are integrated; inputs;
-/// estimates; the baselines' estimates; signals and courses; what imperfect sensors show; signs in the rates.
+/// The positions of the values: time; x, y and the baselines' states, which are integrated; inputs; estimates; the
+/// baselines' estimates; signals and courses; samples of imperfect sensors; signs in the rates.
 #[derive(Debug)]
 pub(crate) struct Layout {
     /// The symbols in the order of the table; behind those of the ranges, signs in the rates.
     pub(crate) symbols: Vec<Symbol>,
-    /// x, y and the baselines' states together.
+    /// x, y and the baselines' states combined.
     pub(crate) state: Range<usize>,
     pub(crate) x: Range<usize>,
-    /// The outputs as they are.
+    /// The true outputs.
     pub(crate) y: Range<usize>,
     pub(crate) u: Range<usize>,
-    /// The time as observers are told it, which then is the last of the inputs.
-    pub(crate) told: Option<usize>,
+    /// The time as observers measure it, which then is the last of the inputs.
+    pub(crate) measured_time: Option<usize>,
     /// The observer's estimates.
     pub(crate) hat: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
-    pub(crate) rivals: Range<usize>,
-    /// Signals, then the courses of what is true of the plant.
+    pub(crate) baseline_estimates: Range<usize>,
+    /// Signals, then the courses of true parameters and states.
     pub(crate) signals: Range<usize>,
     /// The last sample of each output that arrived; empty where sensors are perfect.
-    pub(crate) shown: Range<usize>,
+    pub(crate) last_samples: Range<usize>,
 }
 
 impl Layout {
@@ -53,23 +55,35 @@ impl Layout {
         let y = add(plant.y.iter().map(|output| output.symbol).collect());
         let own = add(baselines()
             .filter_map(|b| Some((&b.name.value, b.value.equations()?)))
-            .flat_map(|(name, b)| b.state.iter().map(|entry| rival_state(arena, name, &entry.name.value)))
+            .flat_map(|(name, b)| b.state.iter().map(|entry| baseline_state(arena, name, &entry.name.value)))
             .collect());
         let u = add(plant.u.clone());
         let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
-        let rivals = add(baselines().flat_map(|b| rival_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
+        let baseline_hats =
+            add(baselines().flat_map(|b| baseline_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
         let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
         let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
         let signals = add(signals.chain(courses).collect());
         let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
-        let shown = add(imperfect.map(|output| shown(arena, &arena.name(output.symbol))).collect());
-        let told = plant.time.map(|_| u.end - 1);
-        Self { symbols, state: x.start..own.end, x, y, u, told, hat, rivals, signals, shown }
+        let last_samples = add(imperfect.map(|output| last_sample(arena, &arena.name(output.symbol))).collect());
+        let measured_time = plant.time.map(|_| u.end - 1);
+        Self {
+            symbols,
+            state: x.start..own.end,
+            x,
+            y,
+            u,
+            measured_time,
+            hat,
+            baseline_estimates: baseline_hats,
+            signals,
+            last_samples,
+        }
     }
 
-    /// The inputs but for the time.
+    /// The inputs without the time.
     pub(crate) fn commanded(&self) -> Range<usize> {
-        self.u.start..self.told.unwrap_or(self.u.end)
+        self.u.start..self.measured_time.unwrap_or(self.u.end)
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
@@ -83,15 +97,7 @@ impl Layout {
     }
 }
 
-/// A program; a symbol without a value is a diagnostic at `span`.
-pub(crate) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
-    lower(arena, inputs, outputs).map_err(|undeclared| {
-        let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
-        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
-    })
-}
-
-/// Time as it is; what observers are told of it is an input. No declared name is `t` where there is a simulation.
+/// The true time; the time that observers measure is an input. No declared name is `t` where there is a simulation.
 pub(crate) fn time(arena: &Arena) -> Symbol {
     arena.generated("t")
 }
@@ -102,7 +108,7 @@ pub(crate) fn course(arena: &Arena, name: &str) -> Symbol {
 }
 
 /// The last sample of an output that arrived.
-pub(crate) fn shown(arena: &Arena, output: &str) -> Symbol {
+pub(crate) fn last_sample(arena: &Arena, output: &str) -> Symbol {
     arena.generated(&format!("shown({output})"))
 }
 
@@ -112,25 +118,25 @@ pub(crate) fn estimate(arena: &Arena, state: &str) -> Symbol {
 }
 
 /// A state of a baseline.
-pub(crate) fn rival_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+pub(crate) fn baseline_state(arena: &Arena, baseline: &str, state: &str) -> Symbol {
     arena.generated(&format!("{baseline}.{state}"))
 }
 
 /// The states that a baseline estimates, with its estimates.
-pub(crate) fn rival_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
+pub(crate) fn baseline_estimates(plant: &Plant, baseline: &Entry<Baseline>) -> Vec<(String, Symbol)> {
     let arena = &plant.arena;
     let states: Vec<String> = match baseline.value.equations() {
         Some(equations) => equations.estimate.iter().map(|entry| entry.name.value.clone()).collect(),
         None => plant.x.iter().map(|state| arena.name(state.symbol)).collect(),
     };
     let estimate = |state: String| {
-        let symbol = rival_estimate(arena, &baseline.name.value, &state);
+        let symbol = baseline_estimate(arena, &baseline.name.value, &state);
         (state, symbol)
     };
     states.into_iter().map(estimate).collect()
 }
 
 /// A baseline's estimate of a state.
-pub(crate) fn rival_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
+pub(crate) fn baseline_estimate(arena: &Arena, baseline: &str, state: &str) -> Symbol {
     arena.generated(&format!("{baseline}.hat({state})"))
 }

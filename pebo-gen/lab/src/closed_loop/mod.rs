@@ -1,16 +1,15 @@
 //! The closed loop of plant, sensors, control law, observer and baselines.
 
 mod baseline;
-mod changed;
 mod control;
 pub(crate) mod ensemble;
+mod estimator;
 pub(crate) mod failure;
 mod growth;
 pub(crate) mod layout;
 mod noise;
 pub(crate) mod ode;
-pub(crate) mod overrides;
-pub(crate) mod panel;
+pub(crate) mod panels;
 pub(crate) mod run;
 pub(crate) mod scenario;
 mod scope;

@@ -1,11 +1,11 @@
-//! Chance: numbers that are white, and the same in every run with the same seed.
+//! White random numbers, the same in every run with the same seed.
 //!
-//! In: a seed, and which sample of which stream; an output is a stream. Out: a normal number, or a uniform one. Nothing is
-//! kept from one number to the next, so that the noise of an output does not depend on which others are noisy or how often
-//! anybody looks. It is ours and no library's, because a figure must not change with a library's version.
+//! In: a seed, a stream and a sample; an output is a stream. Out: a normal number, or a uniform one. Nothing is kept
+//! from one number to the next, so that the noise of an output does not depend on the noise of others or on the number
+//! of calls. It is our own, because a figure must not change with a library's version.
 //!
-//! Method: the finaliser of `SplitMix64` (Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, 2014) as a
-//! hash of the three; Box and Muller's method.
+//! Method: the finaliser of `SplitMix64` (Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, 2014)
+//! as a hash of the three; Box and Muller's method.
 
 use std::f64::consts::TAU;
 
@@ -14,10 +14,10 @@ use crate::timing::real;
 /// `SplitMix64`'s increment, the golden ratio's fraction of 2^64.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The stream that says which samples are dropped.
+/// The stream that decides about dropped samples.
 pub(crate) const DROPPED: u64 = u64::MAX;
 
-/// The stream that says how far an instant is from its place.
+/// The stream of the instants' jitter.
 pub(crate) const JITTER: u64 = u64::MAX - 1;
 
 /// A normal number of variance 1.
@@ -26,7 +26,7 @@ pub(crate) fn normal(seed: u64, stream: u64, sample: u64) -> f64 {
     (-2.0 * radius.ln()).sqrt() * (TAU * angle).cos()
 }
 
-/// A number evenly spread between 0 and 1.
+/// A number uniformly distributed between 0 and 1.
 pub(crate) fn even(seed: u64, stream: u64, sample: u64) -> f64 {
     drawn(seed, stream, sample + 1)
 }
@@ -42,7 +42,7 @@ fn mixed(bits: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-/// Evenly spread between 0 and 1, 0 excluded: of the 53 bits that a number holds.
+/// Uniformly distributed between 0 and 1, 0 excluded: of the 53 bits that a number holds.
 fn uniform(bits: u64) -> f64 {
     (real(bits >> 11) + 1.0) / real(1 << 53)
 }

@@ -1,11 +1,11 @@
-//! The loop, sample by sample.
+//! Runs the closed loop, sample by sample.
 //!
 //! ```text
-//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1 -> observer, told of u_0 -> u_1 -> ..
+//! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1, u_0 -> observer -> u_1 -> ..
 //! ```
 //!
-//! Between y and the observers are the sensors, whose samples may be late, wrong, or not there. With jitter the instants
-//! move, at which the loop samples and sets its inputs; observers are told the period that is meant.
+//! Between y and the observers are the sensors, whose samples may be late, wrong, or missing. With jitter the instants
+//! move at which the loop samples and sets its inputs; observers get the nominal period.
 
 use std::ops::ControlFlow;
 
@@ -16,22 +16,22 @@ use super::failure::Failure;
 use super::growth::Growth;
 use super::layout::TIME;
 use super::ode::Flow;
-use super::ode::equation::Stuck;
-use super::scenario::{Judged, Scenario};
-use super::sensor::{Sensing, instant};
-use super::signal::Course;
+use super::ode::equation::Standstill;
+use super::scenario::{Scenario, ScoredEstimate};
+use super::sensor::{SensorState, instant};
+use super::signal::SignalCursor;
 use super::trace::Trace;
 use crate::figure::curve::Curve;
-use crate::observe::certainty::Following;
-use crate::observe::excitation::Watch;
+use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::driver::ObserverDriver;
+use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::Stepping;
-use crate::score::Scoring;
-use crate::score::expected::Expected;
-use crate::summary::{Rated, Summary};
+use crate::score::Scorer;
+use crate::score::expected::ExpectedErrors;
+use crate::summary::{EstimateScore, Summary};
 use crate::timing::real;
 
-/// How often progress is reported.
+/// The number of reports of progress.
 const REPORTS: u64 = 500;
 
 impl Scenario {
@@ -40,26 +40,26 @@ impl Scenario {
         self.run_while(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// The same, but for a caller who is told now and then which part is done, 0 to 1, and may end it there with
-    /// [`Failure::Stopped`].
+    /// [`run`](Self::run) with reports: `progress` gets the finished share, 0 to 1, now and then, and may end the run
+    /// with [`Failure::Stopped`].
     pub fn run_while(&self, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Trace, Failure> {
         let mut record = Record::new(self);
         let summary = self.follow(&mut |sample, table| record.take(sample, table), progress)?;
         Ok(record.finish(summary))
     }
 
-    /// Runs the loop, shows its table at each sample, and gives what it came to.
+    /// Runs the loop, passes its table at each sample to `show`, and returns the summary.
     pub(crate) fn follow(
         &self,
-        show: &mut dyn FnMut(u64, Shown<'_>),
+        show: &mut dyn FnMut(u64, Snapshot<'_>),
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Summary, Failure> {
-        let mut machine = Machine::start(self)?;
+        let mut machine = LoopState::start(self)?;
         let mut errors = Formulas::new(&self.errors);
-        let mut scores: Vec<Scoring> = self.judged.iter().map(|judged| Scoring::new(judged.period)).collect();
-        let (mut watch, mut expected) = (Watch::default(), Expected::default());
-        let mut certain = Following::new(&self.design.wanted);
-        let mut outside = vec![false; self.judged.len()];
+        let mut scores: Vec<Scorer> = self.scored.iter().map(|scored| Scorer::new(scored.period)).collect();
+        let (mut watch, mut expected) = (ExcitationMonitor::default(), ExpectedErrors::default());
+        let mut certain = CertaintyMonitor::new(&self.design.wanted);
+        let mut outside = vec![false; self.scored.len()];
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
@@ -69,16 +69,16 @@ impl Scenario {
             machine.control()?;
             let table = &machine.table;
             let errors = errors.of(table);
-            for ((score, judged), error) in scores.iter_mut().zip(&self.judged).zip(errors) {
-                score.add(table[TIME], *error, table[judged.truth]);
+            for ((score, scored), error) in scores.iter_mut().zip(&self.scored).zip(errors) {
+                score.add(table[TIME], *error, table[scored.truth]);
             }
-            for (place, (outside, judged)) in outside.iter_mut().zip(&self.judged).enumerate() {
-                *outside |= judged.estimate.baseline.is_none() && self.design.is_outside(place, table[judged.truth]);
+            for (place, (outside, scored)) in outside.iter_mut().zip(&self.scored).enumerate() {
+                *outside |= scored.estimate.baseline.is_none() && self.design.is_outside(place, table[scored.truth]);
             }
-            show(sample, Shown { table, errors });
+            show(sample, Snapshot { table, errors });
             if sample % stride == 0 || sample == samples {
-                watch.look(table[TIME], &machine.stepping.observer.said());
-                let predicted = machine.stepping.standard_errors();
+                watch.look(table[TIME], &machine.driver.observer.component_information());
+                let predicted = machine.driver.standard_errors();
                 certain.look(table[TIME], predicted.as_deref());
                 expected.add(table[TIME], predicted);
             }
@@ -86,31 +86,37 @@ impl Scenario {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
-        let rated = |(place, (judged, score)): (usize, (&Judged, &Scoring))| {
+        let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
-            let own = judged.estimate.baseline.is_none();
+            let own = scored.estimate.baseline.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: outside[place] }
+            EstimateScore {
+                estimate: scored.estimate.clone(),
+                score,
+                expected,
+                step: scored.step,
+                outside: outside[place],
+            }
         };
         Ok(Summary {
             end: machine.table[TIME],
             samples,
-            estimates: self.judged.iter().zip(&scores).enumerate().map(rated).collect(),
+            estimates: self.scored.iter().zip(&scores).enumerate().map(rated).collect(),
             excitation: watch.excitation(&self.design.unknown_names),
-            faults: machine.stepping.faults().clone(),
-            dropped: machine.stepping.dropped(),
-            parted: machine.stepping.parted(),
-            restarts: machine.stepping.restarts(),
-            surprise: machine.stepping.surprise(),
+            faults: machine.driver.faults().clone(),
+            dropped: machine.driver.dropped(),
+            parted: machine.driver.parted(),
+            restarts: machine.driver.restarts(),
+            surprise: machine.driver.surprise(),
             certainty: certain.certainty(),
             known: self.design.settings.known.clone(),
         })
     }
 }
 
-/// What there is to see at a sample.
+/// The loop's values at a sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shown<'a> {
+pub(crate) struct Snapshot<'a> {
     /// All values.
     pub(crate) table: &'a [f64],
     /// The errors of the estimates.
@@ -137,23 +143,23 @@ impl Formulas {
 
 /// The loop at one sample.
 #[derive(Debug)]
-pub(crate) struct Machine<'a> {
+pub(crate) struct LoopState<'a> {
     scenario: &'a Scenario,
     /// All values, see [`Layout`](super::layout::Layout).
     pub(crate) table: Vec<f64>,
-    pub(crate) stepping: Stepping,
+    pub(crate) driver: ObserverDriver,
     flow: Flow,
     growth: Growth,
-    sensing: Sensing<'a>,
-    signals: Vec<Course>,
+    sensor_state: SensorState<'a>,
+    signals: Vec<SignalCursor>,
     given: Formulas,
     measured: Formulas,
-    rivals: Formulas,
+    baselines: Formulas,
     followers: Vec<Box<dyn Follower>>,
     control: Formulas,
 }
 
-impl<'a> Machine<'a> {
+impl<'a> LoopState<'a> {
     /// The loop at its first sample, before the first control.
     pub(crate) fn start(scenario: &'a Scenario) -> Result<Self, Failure> {
         let layout = &scenario.layout;
@@ -162,8 +168,8 @@ impl<'a> Machine<'a> {
         let mut machine = Self {
             scenario,
             table: vec![0.0; layout.symbols.len()],
-            stepping: Stepping::new(observer(&scenario.design).map_err(refused)?),
-            sensing: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
+            driver: ObserverDriver::new(observer(&scenario.design).map_err(refused)?),
+            sensor_state: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 (&scenario.rates, Some(&scenario.slopes)),
                 scenario.switches.as_ref(),
@@ -176,17 +182,17 @@ impl<'a> Machine<'a> {
             signals: scenario.signals.iter().map(super::signal::Signal::course).collect(),
             given: Formulas::new(&scenario.given.1),
             measured: Formulas::new(&scenario.measured),
-            rivals: Formulas::new(&scenario.rivals),
+            baselines: Formulas::new(&scenario.baseline_estimates),
             followers: Vec::new(),
             control: Formulas::new(&scenario.control),
         };
         machine.read_signals();
         let mut start = Formulas::new(&scenario.start);
-        // Baselines start from what the sensors show of the plant's start.
+        // Baselines start from the sensors' samples of the plant's start.
         for _ in 0..2 {
             let state = start.of(&machine.table);
             machine.table[layout.state.clone()].copy_from_slice(state);
-            machine.sensing = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
+            machine.sensor_state = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
             machine.measure(0);
         }
         machine.admit(layout.state.clone())?;
@@ -202,8 +208,8 @@ impl<'a> Machine<'a> {
     pub(crate) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
         let Scenario { timing, jitter, seed, .. } = self.scenario;
         let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
-        if let Err(stuck) = self.flow.advance(&mut self.table, from, to) {
-            return Err(self.stuck(stuck));
+        if let Err(standstill) = self.flow.advance(&mut self.table, from, to) {
+            return Err(self.standstill(standstill));
         }
         self.table[TIME] = to;
         self.read_signals();
@@ -212,9 +218,9 @@ impl<'a> Machine<'a> {
             self.table[*position] = *value;
         }
         let arrives = self.measure(sample);
-        if let Some(told) = self.scenario.layout.told {
-            // An input holds for an interval: of one that moves on, the mean does. Of jitter nobody is told.
-            self.table[told] = timing.at(sample) - timing.step / 2.0;
+        if let Some(measured_time) = self.scenario.layout.measured_time {
+            // An input holds for an interval, so the time is its mean there. Jitter is not measured.
+            self.table[measured_time] = timing.at(sample) - timing.step / 2.0;
         }
         let state = self.scenario.layout.state.clone();
         self.admit(state.clone())
@@ -230,8 +236,8 @@ impl<'a> Machine<'a> {
         self.estimate(sample, arrives)
     }
 
-    /// Why the integration came to a stand.
-    fn stuck(&self, Stuck { steps, at, state, fast }: Stuck) -> Failure {
+    /// The failure for a standstill of the integration.
+    fn standstill(&self, Standstill { steps, at, state, fast }: Standstill) -> Failure {
         let slow = fast.map(|(place, rate)| Failure::Slow {
             at,
             steps,
@@ -264,44 +270,44 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// Lets the sensors take this sample, which `measured` then has; whether it arrives.
+    /// Lets the sensors take this sample into `measured`; returns true if it arrives.
     fn measure(&mut self, sample: u64) -> bool {
         let layout = &self.scenario.layout;
-        let (before, after) = self.table.split_at_mut(layout.shown.start);
-        let (outputs, shown) = (&before[layout.y.clone()], &mut after[..layout.shown.len()]);
-        let arrives = self.sensing.sample(sample, before[TIME], outputs, shown);
+        let (before, after) = self.table.split_at_mut(layout.last_samples.start);
+        let (outputs, last_samples) = (&before[layout.y.clone()], &mut after[..layout.last_samples.len()]);
+        let arrives = self.sensor_state.sample(sample, before[TIME], outputs, last_samples);
         self.measured.of(&self.table);
         arrives
     }
 
-    /// Lets all observers have the sample of now, if it arrives, and the inputs of the interval before.
+    /// Passes the present sample, if it arrives, and the inputs of the interval before to all observers.
     fn estimate(&mut self, sample: u64, arrives: bool) -> Result<(), Failure> {
         let layout = &self.scenario.layout;
         for ((place, _), follower) in self.scenario.followers.iter().zip(&self.followers) {
             follower.write(&mut self.table[place.clone()]);
             self.admit(place.clone())?;
         }
-        let estimates = self.rivals.of(&self.table);
-        self.table[layout.rivals.clone()].copy_from_slice(estimates);
+        let estimates = self.baselines.of(&self.table);
+        self.table[layout.baseline_estimates.clone()].copy_from_slice(estimates);
         // The observer's first call gives its inputs and its step no effect.
         let y = &mut self.measured.values;
-        if self.stepping.observer.has_parts() {
+        if self.driver.observer.admits_partial() {
             self.scenario.sensors.leave_out(sample, y);
         }
         let (before, after) = self.table.split_at_mut(layout.hat.start);
         let hat = &mut after[..layout.hat.len()];
         let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
         if !arrives {
-            self.stepping.miss(u, step);
+            self.driver.miss(u, step);
             return Ok(());
         }
-        match self.stepping.arrive(y, u, step, hat) {
-            Err(fault) if self.stepping.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+        match self.driver.arrive(y, u, step, hat) {
+            Err(fault) if self.driver.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
             _ => Ok(()),
         }
     }
 
-    /// Whether the values at these positions are finite.
+    /// Checks that the values at these positions are finite.
     fn admit(&self, range: std::ops::Range<usize>) -> Result<(), Failure> {
         match range.into_iter().find(|position| !self.table[*position].is_finite()) {
             None => Ok(()),
@@ -312,7 +318,7 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// What is kept of a run.
+/// The rows and curves that are kept of a run.
 #[derive(Debug)]
 struct Record<'a> {
     scenario: &'a Scenario,
@@ -335,7 +341,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    fn take(&mut self, sample: u64, Shown { table, errors }: Shown<'_>) {
+    fn take(&mut self, sample: u64, Snapshot { table, errors }: Snapshot<'_>) {
         let timing = &self.scenario.timing;
         for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
             curve.add(sample, timing.samples, (table[TIME], *value));
@@ -353,7 +359,7 @@ impl<'a> Record<'a> {
         for (hat, error) in table[layout.hat.clone()].iter().zip(errors) {
             self.rows.extend([*hat, *error]);
         }
-        self.rows.extend(&table[layout.rivals.clone()]);
+        self.rows.extend(&table[layout.baseline_estimates.clone()]);
     }
 
     fn finish(self, summary: Summary) -> Trace {

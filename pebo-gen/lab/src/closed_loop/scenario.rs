@@ -1,7 +1,7 @@
-//! A model's sections `observer` and `simulation`, resolved: everything that a run needs, as programs.
+//! A scenario: a model's sections `observer` and `simulation`, resolved to the programs of a run.
 //!
-//! In: an accepted derivation with what was written, and settings of the call. Out: the scenario, or
-//! every mistake in the sections. After this, a run can fail only by what its numbers do.
+//! In: an accepted derivation with its model, and settings of the call. Out: the scenario, or every mistake in the
+//! sections. After this, a run can fail only by its numbers.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -15,25 +15,26 @@ use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_runtime::Fault;
 
-use super::baseline::{Rival, Sampled};
-use super::changed::{changed, told};
+use super::baseline::{NamedBaseline, ResolvedBaseline};
+use super::estimator::{estimator_text, overridden};
 use super::failure::Failure;
-use super::layout::{Layout, estimate, program, rival_estimate};
-use super::ode::switching::{Switched, Switches};
-use super::overrides::Overrides;
-use super::panel::{Panel, Panels};
+use super::layout::{Layout, baseline_estimate, estimate};
+use super::ode::switching::{SwitchPrograms, Switches};
+use super::panels::Panels;
 use super::scope::{Estimates, Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
 use super::trace::Trace;
 use super::truth::Truth;
 use super::{control, ode};
-use crate::observe::design::Design;
+use crate::figure::panel::Panel;
+use crate::observe::design::{Design, program};
+use crate::overrides::Overrides;
 use crate::summary::advice::{Origin, advise};
 use crate::summary::{Estimate, Summary};
 use crate::timing::Timing;
 
-/// Numbers that a table may hold; as text this is some hundred megabytes.
+/// The most numbers of a table; as text this is some hundred megabytes.
 const MOST_VALUES: f64 = 2e7;
 
 /// A closed loop, ready to be run.
@@ -52,31 +53,31 @@ pub struct Scenario {
     pub(crate) start: Program,
     /// The values of states and outputs that are not integrated, with their positions in the table.
     pub(crate) given: (Vec<usize>, Program),
-    /// What the sensors showed last.
+    /// The last samples of the sensors.
     pub(crate) measured: Program,
     pub(crate) sensors: Sensors,
-    /// How far instants are from their places at most, in steps.
+    /// The largest jitter of instants, in steps.
     pub(crate) jitter: f64,
-    /// Of chance.
+    /// The seed of the random numbers.
     pub(crate) seed: u64,
-    /// In what the plant and its sensors differ from what the model says: keys of the section.
+    /// The differences of plant and sensors from the model: keys of the section.
     pub(crate) departures: Vec<&'static str>,
     /// The first state that is given a course, if no parameter is.
-    moved: Option<String>,
+    moving_state: Option<String>,
     /// The rates of the state.
     pub(crate) rates: Program,
     /// Their derivatives by the state, by rows, with signs held.
     pub(crate) slopes: Program,
     /// The signs in them, if there are any.
-    pub(crate) switches: Option<Switched>,
+    pub(crate) switches: Option<SwitchPrograms>,
     /// The baselines' estimates.
-    pub(crate) rivals: Program,
-    /// Baselines that are fed samples, with where they write their estimates.
-    pub(crate) followers: Vec<(Range<usize>, Sampled)>,
+    pub(crate) baseline_estimates: Program,
+    /// Baselines that take samples, with the positions of their estimates.
+    pub(crate) followers: Vec<(Range<usize>, NamedBaseline)>,
     /// The inputs.
     pub(crate) control: Program,
     /// The estimates, those of the observer first.
-    pub(crate) judged: Vec<Judged>,
+    pub(crate) scored: Vec<ScoredEstimate>,
     /// Their errors.
     pub(crate) errors: Program,
     pub(crate) panels: Vec<Panel>,
@@ -86,20 +87,20 @@ pub struct Scenario {
     pub(crate) columns: Vec<String>,
     /// The names of the table's values.
     pub(crate) names: Vec<String>,
-    /// What to do where the left inverse has no value at the start of the extension.
+    /// The help where the left inverse has no value at the start of the extension.
     restart: String,
     span: Span,
 }
 
 /// An estimate that is compared with the state that it is of.
 #[derive(Debug)]
-pub(crate) struct Judged {
+pub(crate) struct ScoredEstimate {
     pub(crate) estimate: Estimate,
-    /// Where the state stands in the table.
+    /// The position of the state in the table.
     pub(crate) truth: usize,
-    /// Of an angle.
+    /// The period of an angle.
     pub(crate) period: Option<f64>,
-    /// Of a state that the outputs show only up to multiples of it.
+    /// The step, if the outputs determine the state only up to multiples of it.
     pub(crate) step: Option<f64>,
 }
 
@@ -115,7 +116,7 @@ impl Scenario {
     ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let mut problems = Diagnostics::new();
-        let model = &*changed(model, overrides);
+        let model = &*overridden(model, overrides);
         let Some(simulation) = &model.simulation else { return Err(vec![missing(model)]) };
         let names = Names { model, simulation, plant };
         let scenario = Resolution { names, problems: &mut problems }.scenario(derivation, overrides);
@@ -134,11 +135,11 @@ impl Scenario {
         &self.estimator
     }
 
-    /// What there is to say of a run that did not converge: why, and what mends it.
+    /// The advice on a run that did not converge: reason and mend.
     pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
         advise(
             summary,
-            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moved.as_deref())),
+            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moving_state.as_deref())),
             self.span,
         )
     }
@@ -167,8 +168,8 @@ impl Scenario {
     }
 }
 
-/// What to do where the left inverse has no value at the start of the extension: the start that is chosen where nobody says
-/// one, if there is any.
+/// The help where the left inverse has no value at the start of the extension: the start that is chosen by default, if
+/// there is one.
 fn restart(names: &Names, derivation: &Derivation) -> String {
     let plant = names.plant;
     let phi: Vec<String> = plant.phi.iter().map(|phi| plant.arena.print(phi.expr)).collect();
@@ -205,16 +206,19 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names.asked(), derivation, &numbers, overrides.step, problems);
+        let design = Design::resolve(&names.request(), derivation, &numbers, overrides.step, problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
         let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
-        let mut rivals: Vec<Rival> =
-            simulation.baselines.iter().filter_map(|entry| Rival::resolve(&names, entry, problems)).collect();
+        let mut baselines: Vec<ResolvedBaseline> = simulation
+            .baselines
+            .iter()
+            .filter_map(|entry| ResolvedBaseline::resolve(&names, entry, problems))
+            .collect();
         let truth = Truth::resolve(&names, problems);
-        let start = start(&names, &truth, &rivals, problems);
-        let rates = rates(&names, &truth, &rivals, problems);
+        let start = start(&names, &truth, &baselines, problems);
+        let rates = rates(&names, &truth, &baselines, problems);
         let (timing, mut design, mut rates) = (timing?, design?, rates?);
 
         let hats: Estimates = design
@@ -226,7 +230,7 @@ impl Resolution<'_> {
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
         let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
-        let panels = Panels::resolve(&names, &hats, &errors, &rivals, problems);
+        let panels = Panels::resolve(&names, &hats, &errors, &baselines, problems);
 
         let layout = Layout::new(plant, simulation, &design.recovered);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
@@ -242,21 +246,22 @@ impl Resolution<'_> {
         if let Some(share) = overrides.initial_error {
             begin(&names, (&layout, &signals), &start, share, &mut design.settings.chi_0);
         }
-        let columns = columns(plant, &design.recovered, &rivals);
+        let columns = columns(plant, &design.recovered, &baselines);
         problems.keep(admit_table(&timing, columns.len()));
-        let followers = followers(plant, &layout, &mut rivals);
-        let estimates: Vec<Expr> = rivals.iter().flat_map(|rival| rival.estimates.iter().map(|e| e.1)).collect();
+        let followers = followers(plant, &layout, &mut baselines);
+        let estimates: Vec<Expr> =
+            baselines.iter().flat_map(|baseline| baseline.estimates.iter().map(|e| e.1)).collect();
         let outputs = plant.y.iter().map(|output| output.symbol);
         let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
-        let (judged, errors) =
-            judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &rivals);
+        let (scored, errors) =
+            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &baselines);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
-            estimator: told(&names.model.observer),
+            estimator: estimator_text(&names.model.observer),
             feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
             start: compile(&start)?,
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
@@ -264,15 +269,15 @@ impl Resolution<'_> {
             sensors,
             jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
             departures: simulation.departures(),
-            moved: moved(&names),
+            moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
             slopes: compile(&slopes(arena, &rates, state))?,
             switches: switches?,
-            rivals: compile(&estimates)?,
+            baseline_estimates: compile(&estimates)?,
             followers,
             control: compile(&control)?,
-            judged,
+            scored,
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
             panels: panels.panels,
@@ -289,14 +294,14 @@ impl Resolution<'_> {
 }
 
 /// The first state that `plant` gives a course, if it names no parameter.
-fn moved(names: &Names) -> Option<String> {
+fn moving_state(names: &Names) -> Option<String> {
     let of_plant = || names.simulation.plant.iter().map(|entry| &entry.name.value);
     let is_state = |name: &&String| names.model.x.iter().any(|state| state.value == **name);
     of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
 }
 
-/// x, y and the baselines' states at the start, where the inputs are still 0.
-fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Vec<Expr> {
+/// x, y and the baselines' states at the start, with inputs 0.
+fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
     let states: Vec<Symbol> = states.chain(plant.y.iter().map(|output| output.symbol)).collect();
@@ -308,16 +313,16 @@ fn start(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnost
         values.insert(states[place], arena.substitute(value, &values));
     }
     let all: Vec<Expr> = states.into_iter().map(|symbol| arena.of_symbol(symbol)).collect();
-    let others = rivals.iter().flat_map(|rival| rival.start.iter().copied());
+    let others = baselines.iter().flat_map(|baseline| baseline.start.iter().copied());
     arena.substitute_all(&all.into_iter().chain(others).collect::<Vec<_>>(), &values)
 }
 
-/// The extension at the start, as wrong as the call asks for.
+/// The extension at the start, with the share of its error that the call asks for.
 fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr], share: f64, chi_0: &mut [f64]) {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
     let at: BTreeMap<Symbol, Expr> = states.zip(start.iter().copied()).chain(names.numbers()).collect();
-    // The inputs are still 0, as where states are given by them.
+    // The inputs are still 0, as for states that depend on them.
     let mut table = vec![0.0; layout.symbols.len()];
     for (position, signal) in layout.signals.clone().zip(signals) {
         table[position] = signal.course().value(0.0);
@@ -327,15 +332,20 @@ fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr],
         if let Ok(program) = layout.program(arena, &[arena.substitute(formula.expr, &at)], Span::NOWHERE) {
             Interpreter::new(&program).run(&table, &mut value);
         }
-        // Where phi has no value at the start, the extension begins where it did.
+        // Where phi has no value at the start, the extension keeps its own.
         if value[0].is_finite() {
             *chi = value[0] + share * (*chi - value[0]);
         }
     }
 }
 
-/// The rates of x, y and the baselines' states; of what is not integrated, 0.
-fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnostics) -> Option<Vec<Expr>> {
+/// The rates of x, y and the baselines' states; 0 for those that are not integrated.
+fn rates(
+    names: &Names,
+    truth: &Truth,
+    baselines: &[ResolvedBaseline],
+    problems: &mut Diagnostics,
+) -> Option<Vec<Expr>> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
     let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
@@ -354,7 +364,7 @@ fn rates(names: &Names, truth: &Truth, rivals: &[Rival], problems: &mut Diagnost
         }
     }
     let mut found = truth.of_plant(names, &found);
-    let others: Vec<Expr> = rivals.iter().flat_map(|rival| rival.rates.iter().copied()).collect();
+    let others: Vec<Expr> = baselines.iter().flat_map(|baseline| baseline.rates.iter().copied()).collect();
     found.extend(truth.between_samples(names, &others));
     (!problems.has_errors()).then_some(found)
 }
@@ -364,24 +374,24 @@ fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
     rates.iter().flat_map(|rate| state.iter().map(|symbol| arena.derivative(*rate, *symbol))).collect()
 }
 
-/// The baselines that are fed samples, with where they write.
-fn followers(plant: &Plant, layout: &Layout, rivals: &mut [Rival]) -> Vec<(Range<usize>, Sampled)> {
+/// The baselines that take samples, with the positions of their estimates.
+fn followers(plant: &Plant, layout: &Layout, baselines: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
     let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
-    let follower = |rival: &mut Rival| {
-        let sampled = rival.sampled.take()?;
-        let symbol = rival_estimate(&plant.arena, &rival.name, &first);
+    let follower = |baseline: &mut ResolvedBaseline| {
+        let sampled = baseline.sampled.take()?;
+        let symbol = baseline_estimate(&plant.arena, &baseline.name, &first);
         let start = layout.symbols.iter().position(|known| *known == symbol)?;
         Some((start..start + plant.x.len(), sampled))
     };
-    rivals.iter_mut().filter_map(follower).collect()
+    baselines.iter_mut().filter_map(follower).collect()
 }
 
-/// Up to what states are known.
+/// Periods up to which states are known.
 #[derive(Debug)]
 pub(crate) struct Periods {
-    /// Of angles: what differs by it is the same.
+    /// Of angles: values that differ by it are the same.
     of_angles: BTreeMap<Symbol, Expr>,
-    /// Of states that are no angles, which the outputs do not tell from one another.
+    /// Of states that are no angles: the outputs do not distinguish values that differ by it.
     steps: BTreeMap<Symbol, Expr>,
 }
 
@@ -397,7 +407,7 @@ impl Periods {
     }
 }
 
-/// Estimate less truth; for an angle, the difference that is least in magnitude.
+/// Estimate less truth; for an angle, the difference with the least absolute value.
 fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
     use pebo_cas::Function::{Atan2, Cos, Sin};
     let arena = &plant.arena;
@@ -413,40 +423,40 @@ fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
 }
 
 /// Every estimate with its error: those of the observer, then those of each baseline.
-pub(crate) fn judged(
+pub(crate) fn scored(
     (plant, table): (&Plant, &[Symbol]),
     periods: &Periods,
     hats: &Estimates,
-    rivals: &[Rival],
-) -> (Vec<Judged>, Vec<Expr>) {
+    baselines: &[ResolvedBaseline],
+) -> (Vec<ScoredEstimate>, Vec<Expr>) {
     let arena = &plant.arena;
-    let of_rivals = rivals.iter().flat_map(|rival| {
-        let estimates = rival
+    let of_baselines = baselines.iter().flat_map(|baseline| {
+        let estimates = baseline
             .estimates
             .iter()
-            .map(|(state, _)| (state.clone(), arena.of_symbol(rival_estimate(arena, &rival.name, state))));
-        estimates.map(|estimate| (Some(rival.name.clone()), estimate))
+            .map(|(state, _)| (state.clone(), arena.of_symbol(baseline_estimate(arena, &baseline.name, state))));
+        estimates.map(|estimate| (Some(baseline.name.clone()), estimate))
     });
     let own = hats.iter().cloned().map(|estimate| (None, estimate));
-    let (baselines, estimates): (Vec<_>, Estimates) = own.chain(of_rivals).unzip();
+    let (names, estimates): (Vec<_>, Estimates) = own.chain(of_baselines).unzip();
     let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
         let symbol = arena.symbol(state);
         let number = |periods: &BTreeMap<Symbol, Expr>| {
             let program = program(arena, &[], &[*periods.get(&symbol)?], Span::NOWHERE).ok()?;
             Interpreter::new(&program).evaluate(|_| f64::NAN).next()
         };
-        Some(Judged {
+        Some(ScoredEstimate {
             estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
             truth: table.iter().position(|known| *known == symbol)?,
             period: number(&periods.of_angles),
             step: number(&periods.steps),
         })
     };
-    let judged = baselines.into_iter().zip(&estimates).filter_map(judge).collect();
-    (judged, errors(plant, periods, &estimates))
+    let scored = names.into_iter().zip(&estimates).filter_map(judge).collect();
+    (scored, errors(plant, periods, &estimates))
 }
 
-fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String> {
+fn columns(plant: &Plant, recovered: &[Symbol], baselines: &[ResolvedBaseline]) -> Vec<String> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|state| state.symbol);
     let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
@@ -455,13 +465,13 @@ fn columns(plant: &Plant, recovered: &[Symbol], rivals: &[Rival]) -> Vec<String>
     for state in recovered.iter().map(|state| arena.name(*state)) {
         columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
     }
-    for rival in rivals {
-        columns.extend(rival.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", rival.name)));
+    for baseline in baselines {
+        columns.extend(baseline.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", baseline.name)));
     }
     columns
 }
 
-/// Only a call asks for a table that is too large: a file does not say how often rows are written.
+/// Refuses a table that is too large. Only a call can ask for one, as a file does not set the interval of rows.
 fn admit_table(timing: &Timing, columns: usize) -> Result<(), Diagnostic> {
     let columns = u64::try_from(columns).unwrap_or(u64::MAX);
     let values = crate::timing::real(timing.rows()) * crate::timing::real(columns);

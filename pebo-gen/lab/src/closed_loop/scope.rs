@@ -1,8 +1,8 @@
-//! What each place of the section `simulation` can see.
+//! The scopes of the formulas in the section `simulation`.
 //!
-//! Parameters are numbers here, those of the model; an output is what its sensor showed last. A definition is lowered in
-//! each place anew, so that `hat(x)` in it is the estimate of the place that uses it; where it needs what is hidden, the
-//! definition is hidden too.
+//! Parameters are the model's numbers here; an output is the last sample of its sensor. A definition is lowered for
+//! each use anew, so that `hat(x)` in it is the estimate of that formula; where it needs a hidden name, the definition
+//! is hidden too.
 
 use std::collections::BTreeMap;
 
@@ -11,16 +11,16 @@ use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::layout::{rival_state, shown, time};
-use crate::observe::request::Asked;
+use super::layout::{baseline_state, last_sample, time};
+use crate::observe::request::Request;
 
 /// Estimates by the state's name.
 pub(crate) type Estimates = Vec<(String, Expr)>;
 
-/// How much a place sees besides parameters; each more than the one before.
+/// The names visible to a formula besides parameters; each level has more than the one before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Sight {
-    /// Nothing that varies.
+    /// Constants only.
     #[default]
     Constants,
     /// Time and signals, and the definitions.
@@ -33,13 +33,13 @@ pub(crate) enum Sight {
     Everything,
 }
 
-/// What is visible in a place.
+/// The names visible to a formula.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct View<'a> {
     pub(crate) sight: Sight,
     /// The states of this baseline are visible.
     pub(crate) own: Option<(&'a str, &'a Equations)>,
-    /// What `hat(x)` stands for.
+    /// The values of `hat(x)`.
     pub(crate) hats: Estimates,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    /// Where the simulation is described: its first line, for what is missing there.
+    /// The span of the section: its first line, for complaints about missing keys.
     pub(crate) fn section(&self) -> Span {
         let Simulation { duration, step, initial, signals, control, feedback, .. } = self.simulation;
         let numbers = [duration, step].into_iter().flatten().map(|number| number.span);
@@ -62,27 +62,27 @@ impl<'a> Names<'a> {
         numbers.chain(entries).chain(signals).chain(feedback).min().unwrap_or(self.model.name.span)
     }
 
-    /// The observer of the model, asked for by its simulation.
-    pub(crate) fn asked(&self) -> Asked<'a> {
-        Asked { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
+    /// The simulation's request for the model's observer.
+    pub(crate) fn request(&self) -> Request<'a> {
+        Request { model: self.model, plant: self.plant, section: self.section(), who: "the simulation" }
     }
 
     /// The values of the parameters that have one.
     pub(crate) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
-        self.asked().numbers()
+        self.request().numbers()
     }
 
-    /// What the sensor of an output showed last.
+    /// The last sample of an output's sensor.
     pub(crate) fn measured(&self, output: Symbol) -> Expr {
         let arena = &self.plant.arena;
         if self.simulation.is_imperfect() {
-            arena.of_symbol(shown(arena, &arena.name(output)))
+            arena.of_symbol(last_sample(arena, &arena.name(output)))
         } else {
             arena.of_symbol(output)
         }
     }
 
-    /// The names of a place with their meanings.
+    /// The scope of a formula.
     pub(crate) fn scope(&self, view: &View) -> Scope {
         let (plant, arena) = (self.plant, &self.plant.arena);
         let mut scope = Scope::new();
@@ -109,7 +109,7 @@ impl<'a> Names<'a> {
             "an unmeasured state: use its estimate hat(..)",
         );
         show(plant.y.iter().map(|output| output.symbol).collect(), Sight::Outputs, "an output, which varies in time");
-        // Time is not what was told at the last sample, but what it is.
+        // Time is the true one, not that of the last sample.
         show(plant.commanded().collect(), Sight::Inputs, "an input, whose value is not known here");
         // After the signals, which give w its course.
         show(plant.w.clone(), Sight::Everything, "not measured");
@@ -118,7 +118,7 @@ impl<'a> Names<'a> {
         }
         if let Some((name, baseline)) = view.own {
             for state in &baseline.state {
-                let symbol = rival_state(arena, name, &state.name.value);
+                let symbol = baseline_state(arena, name, &state.name.value);
                 scope.define(&state.name.value, arena.of_symbol(symbol));
             }
         }
@@ -168,7 +168,7 @@ impl<'a> Names<'a> {
         self.model.define.iter().chain(&self.simulation.define)
     }
 
-    /// Reports definitions that have no meaning anywhere, and parameters without a value.
+    /// Reports definitions that have no meaning in any scope, and parameters without a value.
     pub(crate) fn check(&self, problems: &mut Diagnostics) {
         let arena = &self.plant.arena;
         let truth = self.plant.x.iter().map(|x| (arena.name(x.symbol), arena.of_symbol(x.symbol)));
@@ -177,7 +177,7 @@ impl<'a> Names<'a> {
         for definition in &self.simulation.define {
             problems.keep(lower(arena, &scope, &definition.value));
         }
-        self.asked().check(problems);
+        self.request().check(problems);
         for unmeasured in &self.plant.w {
             let name = arena.name(*unmeasured);
             if !self.simulation.signals.iter().any(|signal| signal.name.value == name) {

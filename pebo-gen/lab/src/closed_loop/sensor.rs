@@ -1,15 +1,15 @@
-//! Sensors: from the outputs as they are to the samples that observers get.
+//! Sensors: make the samples that observers get of the true outputs.
 //!
-//! In: the outputs at the instants of the loop. Out: of each instant a sample of every output, or that it never arrived.
+//! In: the outputs at the instants of the loop. Out: a sample of every output at each instant, or its loss.
 //!
 //! ```text
 //! y(t - delay) + bias + deviation * (normal number)  ->  nearest multiple of the step  ->  arrives, or is dropped
 //! ```
 //!
-//! A delay that ends between two instants is interpolated straight between the outputs at these: an observer knows no more
-//! of an output than that, and the line leaves neither end behind as a polynomial of higher degree would where an input
-//! jumps. Its error is at most an eighth of the step squared times the output's second derivative. Before its start the
-//! plant rested.
+//! A delay that ends between two instants is interpolated linearly between the outputs at these: an observer knows no
+//! more of an output, and the line does not overshoot as a polynomial of higher degree would where an input jumps. Its
+//! error is at most an eighth of the step squared times the output's second derivative. Before its start the plant is
+//! constant.
 
 use std::collections::VecDeque;
 
@@ -20,10 +20,10 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use super::noise::{DROPPED, JITTER, even, normal};
 use crate::timing::{Timing, whole};
 
-/// Steps that a delay may have: all samples in between are kept.
+/// The most steps of a delay: all samples in between are kept.
 const LONGEST: f64 = 1e6;
 
-/// What the sensors of a plant do; nothing where they are perfect.
+/// The imperfections of a plant's sensors; none where they are perfect.
 #[derive(Debug, Default)]
 pub(crate) struct Sensors {
     each: Vec<Sensor>,
@@ -31,15 +31,15 @@ pub(crate) struct Sensors {
     dropped: f64,
 }
 
-/// What a sensor does to its output.
+/// The imperfections of one sensor.
 #[derive(Clone, Copy, Debug)]
 struct Sensor {
     delay: f64,
     bias: f64,
     deviation: f64,
-    /// Of which a sample is a multiple; 0 for none.
+    /// The step of which samples are multiples; 0 for none.
     step: f64,
-    /// Instants to one whose sample arrives.
+    /// The period in instants: one sample of this many arrives.
     every: u64,
 }
 
@@ -77,26 +77,26 @@ impl Sensors {
         Self { each: outputs.map(sensor).collect(), dropped }
     }
 
-    /// The sensors before their first sample, with chance by this seed. Instants closer than `slack` are one.
-    pub(crate) fn begin(&self, seed: u64, slack: f64) -> Sensing<'_> {
-        Sensing { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
+    /// The sensors before their first sample, with this seed. Instants closer than `slack` are one.
+    pub(crate) fn begin(&self, seed: u64, slack: f64) -> SensorState<'_> {
+        SensorState { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
     }
 }
 
-/// The number that an entry has for an output; 0 if there is none.
+/// The entry of an output; 0 if there is none.
 fn number(entries: &[Entry<Spanned<Decimal>>], output: &str) -> f64 {
     entries.iter().find(|entry| entry.name.value == output).map_or(0.0, |entry| entry.value.value.to_f64())
 }
 
-/// The standard deviation of an output's samples, of noise and of rounding to the nearest multiple of a step, whose error
-/// is evenly spread.
+/// The standard deviation of an output's samples, by noise and by rounding to the nearest multiple of a step, whose
+/// error is uniformly distributed.
 pub(crate) fn deviation(simulation: &Simulation, output: &str) -> f64 {
     number(&simulation.noise, output).hypot(number(&simulation.quantisation, output) / 12.0_f64.sqrt())
 }
 
-/// Sensors at work.
+/// The state of the sensors in a run.
 #[derive(Debug)]
-pub(crate) struct Sensing<'a> {
+pub(crate) struct SensorState<'a> {
     sensors: &'a Sensors,
     seed: u64,
     slack: f64,
@@ -104,18 +104,18 @@ pub(crate) struct Sensing<'a> {
     past: Vec<VecDeque<(f64, f64)>>,
 }
 
-impl Sensing<'_> {
-    /// Takes the outputs at the instant `t` of a sample. Writes what the sensors show if it arrives, and says whether it
-    /// does; perfect ones show nothing.
-    pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], shown: &mut [f64]) -> bool {
+impl SensorState<'_> {
+    /// Takes the outputs at the instant `t` of a sample. Writes the samples and returns true if it arrives; perfect
+    /// sensors write nothing.
+    pub(crate) fn sample(&mut self, sample: u64, t: f64, outputs: &[f64], samples: &mut [f64]) -> bool {
         let Self { sensors, seed, slack, past } = self;
         // The first sample starts the clock.
         let arrives = sample == 0 || sensors.dropped == 0.0 || even(*seed, DROPPED, sample) > sensors.dropped;
-        let values = sensors.each.iter().zip(past).zip(outputs).zip(shown).zip(0_u64..);
-        for ((((sensor, past), value), shown), output) in values {
+        let values = sensors.each.iter().zip(past).zip(outputs).zip(samples).zip(0_u64..);
+        for ((((sensor, past), value), held), output) in values {
             let value = if sensor.delay > 0.0 { delayed(past, (t, *value), t - sensor.delay, *slack) } else { *value };
             if arrives && sample.is_multiple_of(sensor.every) {
-                *shown = sensor.show(value, || normal(*seed, output, sample));
+                *held = sensor.show(value, || normal(*seed, output, sample));
             }
         }
         arrives
@@ -123,7 +123,7 @@ impl Sensing<'_> {
 }
 
 impl Sensors {
-    /// What of an instant's sample is there: an output whose sensor has another period is NaN.
+    /// Makes NaN of the outputs whose sensors have no sample at this instant.
     pub(crate) fn leave_out(&self, sample: u64, outputs: &mut [f64]) {
         for (sensor, output) in self.each.iter().zip(outputs) {
             if !sample.is_multiple_of(sensor.every) {
@@ -134,17 +134,17 @@ impl Sensors {
 }
 
 impl Sensor {
-    /// What is shown of a value, with a number that is drawn if it is needed.
+    /// The sample of a value, with a random number that is drawn if it is needed.
     fn show(&self, value: f64, number: impl FnOnce() -> f64) -> f64 {
         let noise = if self.deviation > 0.0 { self.deviation * number() } else { 0.0 };
         let value = value + self.bias + noise;
         let count = (value / self.step).round();
-        // A zero is a positive one. Of a step too small to be counted there is nothing to be seen.
+        // A zero is a positive one. A step too small to be counted has no effect.
         if self.step > 0.0 && count.is_finite() { self.step * count + 0.0 } else { value }
     }
 }
 
-/// Keeps the newest value, and gives the one at `wanted`, which never goes back.
+/// Keeps the newest value, and returns the one at `wanted`, which never decreases.
 fn delayed(past: &mut VecDeque<(f64, f64)>, newest: (f64, f64), wanted: f64, slack: f64) -> f64 {
     past.push_back(newest);
     while past.get(1).is_some_and(|second| second.0 <= wanted + slack) {
@@ -159,7 +159,7 @@ fn delayed(past: &mut VecDeque<(f64, f64)>, newest: (f64, f64), wanted: f64, sla
     }
 }
 
-/// The instant of a sample: that of its number, but for jitter. The first and the last are where a run begins and ends.
+/// The instant of a sample, with jitter. The first and the last are exact, as a run begins and ends there.
 pub(crate) fn instant(timing: &Timing, jitter: f64, seed: u64, sample: u64) -> f64 {
     let place = timing.at(sample);
     if jitter > 0.0 && sample > 0 && sample < timing.samples {

@@ -1,4 +1,4 @@
-//! Signals in time: formulas that hold one after the other.
+//! Signals in time: piecewise formulas.
 
 use pebo_cas::Arena;
 use pebo_design::model::{Entry, Piece};
@@ -6,12 +6,13 @@ use pebo_design::plant::{Scope, lower};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics};
 
-use super::layout::{program, time};
+use super::layout::time;
+use crate::observe::design::program;
 
 /// A signal.
 #[derive(Debug)]
 pub(crate) struct Signal {
-    /// Beginnings, ascending from 0 or before, with programs from time to the value.
+    /// Start times, ascending from 0 or before, with programs from time to the value.
     pieces: Vec<(f64, Program)>,
 }
 
@@ -33,29 +34,29 @@ impl Signal {
         Self { pieces: pieces.collect() }
     }
 
-    /// When the signal passes from one formula to the next.
+    /// The times at which the signal passes from one formula to the next.
     pub(crate) fn jumps(&self) -> impl Iterator<Item = f64> {
         self.pieces.iter().skip(1).map(|(from, _)| *from)
     }
 
-    /// The signal, ready to be followed from its start.
-    pub(crate) fn course(&self) -> Course {
-        Course {
+    /// A cursor at the signal's start.
+    pub(crate) fn course(&self) -> SignalCursor {
+        SignalCursor {
             pieces: self.pieces.iter().map(|(from, program)| (*from, Interpreter::new(program))).collect(),
             active: 0,
         }
     }
 }
 
-/// A signal that is followed through time.
+/// A signal with its present formula.
 #[derive(Debug)]
-pub(crate) struct Course {
+pub(crate) struct SignalCursor {
     pieces: Vec<(f64, Interpreter)>,
     active: usize,
 }
 
-impl Course {
-    /// Moves on to the formula that holds at `t`; time does not run backwards.
+impl SignalCursor {
+    /// Selects the formula at `t`, which must not decrease.
     pub(crate) fn select(&mut self, t: f64) {
         while self.pieces.get(self.active + 1).is_some_and(|(from, _)| *from <= t) {
             self.active += 1;

@@ -2,9 +2,12 @@
 
 use std::fmt::Write as _;
 
+use super::scenario::Scenario;
+use crate::figure::Sheet;
+use crate::figure::label::Label;
 use crate::summary::Summary;
 
-/// What a run gives. Serialises to `columns`, the names, and `values`, row by row.
+/// The course of a run. Serialises to `columns`, the names, and `values`, row by row.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Trace {
     columns: Vec<String>,
@@ -13,16 +16,16 @@ pub struct Trace {
     /// The points of each panel's curves.
     #[serde(skip)]
     pub(crate) curves: Vec<Vec<Vec<(f64, f64)>>>,
-    /// What the run came to.
+    /// The summary of the run.
     #[serde(skip)]
     pub(crate) summary: Summary,
 }
 
 impl Trace {
-    /// What the name of the column of a state's error ends with.
+    /// The suffix of the names of error columns.
     pub const ERROR: &str = "_error";
 
-    /// The table row by row, the points of each panel's curves, and what the run came to.
+    /// The table row by row, the points of each panel's curves, and the summary of the run.
     pub(crate) fn new(
         (columns, values): (Vec<String>, Vec<f64>),
         curves: Vec<Vec<Vec<(f64, f64)>>>,
@@ -31,7 +34,7 @@ impl Trace {
         Self { columns, values, curves, summary }
     }
 
-    /// What the run came to.
+    /// The summary of the run.
     pub fn summary(&self) -> &Summary {
         &self.summary
     }
@@ -83,5 +86,20 @@ pub(crate) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
         write!(text, "{value}")
     } else {
         write!(text, "{value:e}")
+    }
+}
+
+/// Draws the panels of a scenario with the curves of its run.
+pub fn draw(trace: &Trace, scenario: &Scenario) -> String {
+    let duration = scenario.timing.at(scenario.timing.samples);
+    let title = (scenario.title.as_str(), title(scenario));
+    Sheet { title, time: ([0.0, duration], Label::name("t")), panels: &scenario.panels, curves: &trace.curves }.draw()
+}
+
+fn title(scenario: &Scenario) -> Label {
+    let title = Label::text(&scenario.title);
+    match &scenario.feedback {
+        Some(feedback) => title.remark(&format!("feedback: {feedback}")),
+        None => title,
     }
 }

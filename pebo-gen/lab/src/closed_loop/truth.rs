@@ -1,8 +1,8 @@
-//! The plant as it is, which is not always what the model says of it.
+//! The true plant of a simulation, which may differ from its model.
 //!
-//! In: the plant, and the section `simulation`. Out: the true value of each parameter, a number or a course in time, and
-//! of each state and output that is not integrated: a constant state that is given a course, an output that is given by
-//! its value. Only the plant's own motion uses these; observers and control law have the model's parameters.
+//! In: the plant, and the section `simulation`. Out: the true value of each parameter, a number or a course in time,
+//! and of each state and output that is not integrated: a constant state with a course, an output given by value. Only
+//! the plant's own trajectory uses these; observers and control law have the model's parameters.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,22 +12,22 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 use super::layout::{course, time};
 use super::scope::Names;
 
-/// What is true of the plant.
+/// The true values of the plant.
 #[derive(Debug)]
 pub(crate) struct Truth {
     /// The values of the parameters, and of an input that is the time.
     numbers: BTreeMap<Symbol, Expr>,
-    /// States and outputs that have their values by a formula in the others, inputs and signals.
+    /// States and outputs given by value: formulas in the others, inputs and signals.
     given: BTreeMap<Symbol, Expr>,
 }
 
 impl Truth {
-    /// The truth of a simulation; what cannot be true is reported.
+    /// The truth of a simulation; contradictions are reported.
     pub(crate) fn resolve(names: &Names, problems: &mut Diagnostics) -> Self {
         let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new() };
-        // The plant moves in time itself, not in the samples of it that observers are told.
+        // The plant uses the true time, not the samples of it that observers measure.
         let arena = &names.plant.arena;
-        truth.numbers.extend(names.plant.time.map(|told| (told, arena.of_symbol(time(arena)))));
+        truth.numbers.extend(names.plant.time.map(|input| (input, arena.of_symbol(time(arena)))));
         truth.courses(names, problems);
         truth.values(names, problems);
         for entry in &names.simulation.initial {
@@ -43,8 +43,8 @@ impl Truth {
         truth
     }
 
-    /// The plant as the model has it, with outputs that are given by their value put in; none where these need one
-    /// another, which is reported with the truth.
+    /// The plant of the model, with outputs given by value substituted; none where these are circular, which is
+    /// reported with the truth.
     pub(crate) fn of_model(names: &Names) -> Option<Self> {
         let mut model = Self { numbers: names.numbers(), given: BTreeMap::new() };
         let mut circles = Diagnostics::new();
@@ -75,7 +75,7 @@ impl Truth {
         }
     }
 
-    /// Outputs that are given by their value. A value may need others: each round puts one level of them in.
+    /// Outputs given by value. A value may need others: each round substitutes one level of them.
     fn values(&mut self, names: &Names, problems: &mut Diagnostics) {
         let (plant, arena) = (names.plant, &names.plant.arena);
         let outputs = || plant.y.iter().filter(|output| output.value.is_some());
@@ -100,23 +100,23 @@ impl Truth {
         }
     }
 
-    /// Whether the value of this state or output is given, so that it is not integrated.
+    /// True if this state or output is given by value, so that it is not integrated.
     pub(crate) fn gives(&self, symbol: Symbol) -> bool {
         self.given.contains_key(&symbol)
     }
 
-    /// The formulas of these states and outputs whose values are given, each with its place among them.
+    /// The formulas of those of these states and outputs that are given by value, each with its index among them.
     pub(crate) fn given(&self, symbols: &[Symbol]) -> Vec<(usize, Expr)> {
         let found = symbols.iter().enumerate().filter_map(|(place, symbol)| Some((place, *self.given.get(symbol)?)));
         found.collect()
     }
 
-    /// Formulas of the plant in what is integrated, inputs and signals.
+    /// Formulas of the plant in integrated states, inputs and signals.
     pub(crate) fn of_plant(&self, names: &Names, formulas: &[Expr]) -> Vec<Expr> {
         self.between_samples(names, &names.plant.arena.substitute_all(formulas, &self.numbers))
     }
 
-    /// Formulas without the parameters, in the same.
+    /// Formulas without the parameters, in the same symbols.
     pub(crate) fn between_samples(&self, names: &Names, formulas: &[Expr]) -> Vec<Expr> {
         names.plant.arena.substitute_all(formulas, &self.given)
     }

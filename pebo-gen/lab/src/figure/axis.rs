@@ -17,12 +17,12 @@ pub(super) struct Axis {
 /// A mark.
 #[derive(Clone, Debug)]
 pub(super) struct Mark {
-    /// Its place, from 0 to 1.
+    /// Its position, from 0 to 1.
     pub(super) place: f64,
     pub(super) label: Label,
 }
 
-/// Decades that a logarithmic axis shows at most: what is smaller is noise.
+/// The most decades of a logarithmic axis: smaller values are noise.
 const MOST_DECADES: f64 = 12.0;
 
 const MOST_MARKS: f64 = 6.0;
@@ -45,7 +45,7 @@ impl Axis {
         Self::whole(low - space, high + space)
     }
 
-    /// A logarithmic axis with room for the magnitudes of these values, from decade to decade.
+    /// A logarithmic axis with room for the absolute values of these values, from decade to decade.
     pub(super) fn logarithmic(values: impl Iterator<Item = f64>) -> Self {
         let magnitudes = values.map(f64::abs).filter(|value| *value > 0.0);
         let (low, high) = extent(magnitudes).unwrap_or((0.1, 1.0));
@@ -54,7 +54,7 @@ impl Axis {
         Self { low, high, logarithmic: true, marks: Vec::new(), exponent: 0 }.marked()
     }
 
-    /// The place of a value: from 0 to 1, less if it is below a logarithmic axis.
+    /// The position of a value: from 0 to 1, less if it is below a logarithmic axis.
     pub(super) fn place(&self, value: f64) -> f64 {
         let value = if self.logarithmic { value.abs().log10() } else { value };
         (value - self.low) / (self.high - self.low)

@@ -1,4 +1,4 @@
-//! What the figure needs to know of a value that is sampled a million times.
+//! Thins a curve of a million samples for the figure.
 //!
 //! In: every sample. Out: for each of some hundred equal spans of time, the first, the least, the largest
 //! and the last value with their instants. A line through these looks as one through all samples would
@@ -7,7 +7,7 @@
 /// Spans of time: more than the figure has columns of dots in print.
 const SPANS: u64 = 800;
 
-/// Where a curve goes.
+/// The points of a curve.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Curve {
     /// Instants and values, in the order of time; a value that is not finite is a gap.
@@ -73,7 +73,7 @@ impl Span {
         }
     }
 
-    /// This and the next in one. What is not finite is a gap only where there is nothing else.
+    /// This span and the next in one. Values that are not finite make a gap only where there are no others.
     fn and(self, next: Self) -> Self {
         if !self.least.1.is_finite() {
             return Self { index: self.index, ..next };
@@ -87,9 +87,9 @@ impl Span {
     }
 }
 
-/// The same of a curve that is as long as it turns out to be: its spans grow with it.
+/// The same for a curve of unknown length: its spans grow with it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Growing {
+pub(crate) struct GrowingCurve {
     /// At most twice as many as a curve of known length has.
     spans: Vec<Span>,
     /// A span has two to this power samples.
@@ -97,7 +97,7 @@ pub(crate) struct Growing {
     samples: u64,
 }
 
-impl Growing {
+impl GrowingCurve {
     /// Adds the next sample.
     pub(crate) fn add(&mut self, point: (f64, f64)) {
         let mut index = self.samples >> self.doublings;

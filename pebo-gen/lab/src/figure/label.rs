@@ -1,5 +1,5 @@
-//! Formulas as a person writes them beside a curve: `hat(i1) - i1` becomes an i with a hat and a
-//! subscript, a minus sign, an i with a subscript.
+//! Labels of curves, with formulas typeset: `hat(i1) - i1` becomes an i with a hat and a subscript, a minus sign, an i
+//! with a subscript.
 
 use pebo_cas::print::letter::{greek, parts};
 use pebo_design::model::formula::{Formula, Operator, Term};
@@ -7,19 +7,19 @@ use pebo_design::model::formula::{Formula, Operator, Term};
 /// A label: pieces of text in a row.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Label {
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<Piece>,
 }
 
 /// A piece of a label.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
+pub(crate) struct Piece {
     pub(crate) text: String,
     /// Variables are slanted; numbers, functions and signs are not.
     pub(crate) italic: bool,
     pub(crate) height: Height,
 }
 
-/// Where a piece stands.
+/// The height of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Height {
     Line,
@@ -27,7 +27,7 @@ pub(crate) enum Height {
     Above,
 }
 
-// How tightly the outermost operation of a formula binds.
+// The binding strength of a formula's outermost operation.
 const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const POWER: u8 = 3;
@@ -197,7 +197,7 @@ impl Label {
         }
         match self.runs.last_mut() {
             Some(last) if last.italic == italic && last.height == height => last.text.push_str(text),
-            _ => self.runs.push(Run { text: text.to_owned(), italic, height }),
+            _ => self.runs.push(Piece { text: text.to_owned(), italic, height }),
         }
     }
 }
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(runs("m^3/s"), "_m^3_/s");
         assert_eq!(runs("N m s^-1"), "_N m s^−1");
         assert_eq!(runs("rad/s"), "_rad/s");
-        // What is no exponent stays as it is written.
+        // Text that is no exponent is kept as written.
         assert_eq!(runs("V^x ^"), "_V^x ^");
         assert_eq!(runs("m^-"), "_m^-");
         assert_eq!(runs(""), "");

@@ -1,6 +1,6 @@
-//! A line with many points in, one that looks the same with few points out.
+//! Reduces a line with many points to one with few that looks the same.
 
-/// A distance that nobody sees: a fiftieth of a millimetre in print.
+/// An invisible distance: a fiftieth of a millimetre in print.
 const UNSEEN: f64 = 0.06;
 
 /// The points without those that lie on the line through the others (Douglas and Peucker 1973).
@@ -24,7 +24,7 @@ pub(super) fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points.iter().zip(keep).filter_map(|(point, keep)| keep.then_some(*point)).collect()
 }
 
-/// How far a point is from the segment between two others.
+/// The distance of a point from the segment between two others.
 fn distance(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
     let (along, across) = (to.0 - from.0, to.1 - from.1);
     let length = along.hypot(across);

@@ -6,6 +6,7 @@
 
 pub(crate) mod curve;
 pub(crate) mod label;
+pub(crate) mod panel;
 pub(crate) mod unit;
 
 mod axis;
@@ -14,28 +15,19 @@ mod page;
 mod plot;
 mod svg;
 
-use crate::closed_loop::panel::Panel;
-use crate::closed_loop::scenario::Scenario;
-use crate::closed_loop::trace::Trace;
 use axis::Axis;
 use label::Label;
-pub(super) use page::Band;
+pub(crate) use page::Band;
 use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
+use panel::Panel;
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
-
-/// Draws the panels of a scenario with the curves of its run.
-pub fn draw(trace: &Trace, scenario: &Scenario) -> String {
-    let duration = scenario.timing.at(scenario.timing.samples);
-    let title = (scenario.title.as_str(), title(scenario));
-    Sheet { title, time: ([0.0, duration], Label::name("t")), panels: &scenario.panels, curves: &trace.curves }.draw()
-}
 
 /// Panels with their curves over a common time.
 pub(super) struct Sheet<'a> {
     /// The title as plain text, and as it is drawn.
     pub(super) title: (&'a str, Label),
-    /// From when to when, in seconds, and what the time is called.
+    /// The range of time in seconds, and its label.
     pub(super) time: ([f64; 2], Label),
     pub(super) panels: &'a [Panel],
     /// The points of each panel's curves.
@@ -77,15 +69,7 @@ impl Sheet<'_> {
     }
 }
 
-fn title(scenario: &Scenario) -> Label {
-    let title = Label::text(&scenario.title);
-    match &scenario.feedback {
-        Some(feedback) => title.remark(&format!("feedback: {feedback}")),
-        None => title,
-    }
-}
-
-/// The unit in which this many seconds are read easily, and how many of it a second has.
+/// The unit in which this duration in seconds is read easily, and the number of units in a second.
 fn time_unit(duration: f64) -> (&'static str, f64) {
     match duration {
         d if d < 2e-4 => ("µs", 1e6),

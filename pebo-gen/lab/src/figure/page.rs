@@ -17,5 +17,5 @@ pub(super) const TITLE: f64 = 13.0;
 /// Size of all other letters.
 pub(super) const TEXT: f64 = 12.0;
 
-/// Where values lie about a curve: instants, each with a lower and an upper end.
+/// A band about a curve: instants, each with a lower and an upper end.
 pub(crate) type Band = Vec<(f64, [f64; 2])>;

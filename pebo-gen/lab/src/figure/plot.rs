@@ -4,8 +4,8 @@ use super::axis::Axis;
 use super::label::Label;
 use super::line::thinned;
 use super::page::{Band, LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
+use super::panel::Panel;
 use super::svg::{Anchor, Drawing};
-use crate::closed_loop::panel::Panel;
 use pebo_design::model::Scale;
 
 /// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), each with dashes
@@ -25,7 +25,7 @@ pub(super) const SAMPLE: f64 = 28.0;
 /// From line to line of a legend.
 const SPACING: f64 = 17.0;
 
-/// A panel and where it goes.
+/// A panel at its position.
 #[derive(Debug)]
 pub(super) struct Plot<'a> {
     pub(super) panel: &'a Panel,
@@ -63,7 +63,7 @@ impl Plot<'_> {
             drawing.grid_line((x, self.top), (x, bottom));
         }
         for (number, band) in self.bands.iter().enumerate() {
-            // What is beyond the axis ends at its edge.
+            // Values beyond the axis end at its edge.
             let place = |t: f64, value: f64| {
                 let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
                 (x, bottom - axis.place(value).clamp(0.0, 1.0) * height)
@@ -79,7 +79,7 @@ impl Plot<'_> {
                 let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
                 (x, bottom - axis.place(*value) * height)
             };
-            // What is not finite, or too small for a logarithmic axis, is a gap in the line.
+            // Values that are not finite, or too small for a logarithmic axis, are gaps in the line.
             let parts = curve.split(|point| !point.1.is_finite() || axis.place(point.1) < 0.0);
             let parts: Vec<_> = parts.map(|part| thinned(&part.iter().map(place).collect::<Vec<_>>())).collect();
             drawing.line(&parts, style(number));
@@ -105,7 +105,7 @@ fn heading(panel: &Panel, exponent: i32) -> Label {
     measured(Label::text(&panel.title), exponent, panel.unit.as_deref())
 }
 
-/// What is measured, in a power of ten of a unit.
+/// A quantity in a power of ten of a unit.
 fn measured(what: Label, exponent: i32, unit: Option<&str>) -> Label {
     match (exponent, unit) {
         (0, None) => what,
@@ -137,7 +137,7 @@ fn style(number: usize) -> (&'static str, &'static str) {
 mod tests {
     use super::STYLES;
 
-    /// How bright a colour is (WCAG 2.2, relative luminance).
+    /// The relative luminance of a colour (WCAG 2.2).
     fn luminance(colour: &str) -> f64 {
         let part = |at: usize| {
             let value = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).expect("two digits")) / 255.0;
@@ -150,7 +150,7 @@ mod tests {
     fn lines_stand_out_from_the_sheet() {
         for (colour, _) in STYLES {
             let contrast = 1.05 / (luminance(colour) + 0.05);
-            // WCAG 2.2, 1.4.11: what graphics are read by.
+            // WCAG 2.2, 1.4.11: the contrast of graphics.
             assert!(contrast >= 3.0, "{colour}: {contrast}");
         }
     }

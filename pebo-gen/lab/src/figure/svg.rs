@@ -3,10 +3,10 @@
 use super::label::{Height, Label};
 use super::page::TEXT;
 
-/// A place or a size.
+/// A position or a size.
 pub(super) type Point = (f64, f64);
 
-/// Which part of a text stands at its place.
+/// The end of a text that is at its position.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Anchor {
     Start,
@@ -71,7 +71,7 @@ impl Drawing {
         ));
     }
 
-    /// What an edge goes round, lightly filled so that what lies below is seen.
+    /// The area within an edge, lightly filled so that lines below remain visible.
     pub(super) fn area(&mut self, edge: &[Point], colour: &str) {
         let mut path = String::new();
         for (index, (x, y)) in edge.iter().enumerate() {
@@ -86,7 +86,8 @@ impl Drawing {
     }
 
     pub(super) fn label(&mut self, (x, y): Point, anchor: Anchor, size: f64, label: &Label) {
-        // CairoSVG anchors each run by itself, one over the other: a label of several begins where its width says.
+        // CairoSVG anchors each piece by itself, one over the other: the start of a label with several follows from its
+        // width.
         let (x, anchor) = match anchor {
             Anchor::Middle if label.runs.len() > 1 => (x - width(label, size) / 2.0, Anchor::Start),
             Anchor::End if label.runs.len() > 1 => (x - width(label, size), Anchor::Start),
@@ -99,7 +100,7 @@ impl Drawing {
         };
         let larger = if size > TEXT { format!(" font-size=\"{size}\"") } else { String::new() };
         let mut text = format!("<text x=\"{}\" y=\"{}\"{anchor}{larger}>", number(x), number(y));
-        // `dy` moves all that follows: each run undoes the one before.
+        // `dy` moves all that follows: each piece undoes the one before.
         let mut before = Height::Line;
         // XML drops spaces at the ends of an element, and some readers others there too: they become distances.
         let mut distance = 0.0;
@@ -138,7 +139,7 @@ impl Drawing {
     }
 }
 
-/// How far a run is above the line, in the size of the letters.
+/// The rise of a piece above the line, in the size of the letters.
 fn rise(height: Height) -> f64 {
     match height {
         Height::Line => 0.0,
@@ -159,8 +160,8 @@ fn spaces(text: &str, rest: &str) -> f64 {
     (rest.len()..text.len()).fold(0.0, |width, _| width + SPACE)
 }
 
-/// The width of a label where it is drawn in the widest of the fonts that are asked for, `DejaVu Sans`: nothing is cut or
-/// overlaps in any of them.
+/// The width of a label where it is drawn in the widest of the fonts that are asked for, `DejaVu Sans`: nothing is cut
+/// or overlaps in any of them.
 pub(super) fn width(label: &Label, size: f64) -> f64 {
     let em = |character: char| match character {
         '\u{302}' => 0.0,
@@ -176,7 +177,7 @@ pub(super) fn width(label: &Label, size: f64) -> f64 {
         '\u{1100}'.. => 1.0,
         _ => 0.65,
     };
-    let run = |run: &crate::figure::label::Run| {
+    let run = |run: &crate::figure::label::Piece| {
         let scale = if run.height == Height::Line { size } else { INDEX * size };
         run.text.chars().map(em).sum::<f64>() * scale
     };
@@ -190,7 +191,7 @@ fn number(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// A text without the characters that mean something to XML, or that XML cannot hold.
+/// A text without the characters that are special in XML, or that XML cannot hold.
 fn escaped(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for character in text.chars() {

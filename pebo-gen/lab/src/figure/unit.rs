@@ -1,7 +1,7 @@
 //! The unit of a formula, from those that the model gives its signals.
 //!
-//! In: a formula, and the units of names. Out: the unit of its value, where it follows without arithmetic of units: of a
-//! name, of an estimate, and of sums and differences of what has one unit.
+//! In: a formula, and the units of names. Out: the unit of its value, where it follows without arithmetic of units: of
+//! a name, of an estimate, and of sums and differences of what has one unit.
 
 use pebo_design::model::formula::{Formula, Operator, Term};
 

@@ -1,45 +1,46 @@
-//! Whether estimates are known as well as wanted.
+//! Judges whether estimates are as certain as wanted.
 //!
-//! In: the standard errors that an observer expects of its estimates, as a run goes on, and those that its author wants. Out:
-//! since when all are as small as wanted, or which one is not. The words are those of the runtime's
-//! [`Monitor`](pebo_runtime::Monitor), which does the same for the unknowns of a regression whose gains are written.
+//! In: the standard errors that an observer predicts for its estimates, as a run goes on, and those that its author
+//! wants. Out: the time since which all are as small as wanted, or the one that is not. The words are those of the
+//! runtime's [`Monitor`](pebo_runtime::Monitor), which does the same for the unknowns of a regression whose gains are
+//! written.
 
 use serde::Serialize;
 
-/// A certainty is lost once a variance is twice what is wanted, so that it does not come and go with every sample.
+/// A certainty is lost once a variance is twice the wanted one, so that it does not come and go with every sample.
 const LOST: f64 = std::f64::consts::SQRT_2;
 
-/// How well estimates are known.
+/// The certainty of estimates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "state", rename_all = "kebab-case")]
 pub enum Certainty {
     /// Never as well as wanted.
     NotYet {
-        /// The state that is known least, beside what is wanted of it.
+        /// The state that is known least, relative to its wanted standard error.
         weakest: String,
         /// Its standard error at the end; none where none is predicted.
         error: Option<f64>,
-        /// The one that is wanted.
+        /// The wanted standard error.
         wanted: f64,
     },
     /// As well as wanted.
     Converged {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
     },
-    /// They were, and are no longer.
+    /// No longer as well as wanted.
     Lost {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
-        /// The state that is known least, beside what is wanted of it.
+        /// The state that is known least, relative to its wanted standard error.
         weakest: String,
     },
 }
 
-/// The standard error that is wanted of a state.
+/// The wanted standard error of a state.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Wanted {
-    /// The place of its estimate.
+    /// The index of its estimate.
     pub(crate) estimate: usize,
     pub(crate) state: String,
     pub(crate) error: f64,
@@ -47,7 +48,7 @@ pub(crate) struct Wanted {
 
 /// The certainty as time goes on.
 #[derive(Debug)]
-pub(crate) struct Following<'a> {
+pub(crate) struct CertaintyMonitor<'a> {
     wanted: &'a [Wanted],
     known: State,
     /// The one that is known least, with its standard error.
@@ -61,13 +62,13 @@ enum State {
     Lost(f64),
 }
 
-impl<'a> Following<'a> {
-    /// Before the first sample.
+impl<'a> CertaintyMonitor<'a> {
+    /// The certainty before the first sample.
     pub(crate) fn new(wanted: &'a [Wanted]) -> Self {
         Self { wanted, known: State::NotYet, weakest: None }
     }
 
-    /// Looks at the standard errors of an instant, where they are known.
+    /// Takes the standard errors of an instant, where they are known.
     pub(crate) fn look(&mut self, t: f64, errors: Option<&[f64]>) {
         let over = |(wanted, error): &(&Wanted, f64)| error / wanted.error;
         let known = self.wanted.iter().filter_map(|wanted| Some((wanted, *errors?.get(wanted.estimate)?)));
@@ -80,7 +81,7 @@ impl<'a> Following<'a> {
         };
     }
 
-    /// What came of it; none where nothing is wanted.
+    /// The certainty now; none where nothing is wanted.
     pub(crate) fn certainty(&self) -> Option<Certainty> {
         let first = self.wanted.first()?;
         let (weakest, error) = self.weakest.map_or((first, None), |(wanted, error)| (wanted, Some(error)));
@@ -94,13 +95,13 @@ impl<'a> Following<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Certainty, Following, Wanted};
+    use super::{Certainty, CertaintyMonitor, Wanted};
 
     #[test]
     fn certainty_comes_and_goes_with_the_standard_errors() {
         let wanted = |estimate: usize, state: &str, error| Wanted { estimate, state: state.to_owned(), error };
         let both = [wanted(1, "p", 0.1), wanted(0, "q", 2.0)];
-        let mut following = Following::new(&both);
+        let mut following = CertaintyMonitor::new(&both);
         following.look(0.0, None);
         let unknown = Certainty::NotYet { weakest: "p".to_owned(), error: None, wanted: 0.1 };
         assert_eq!(following.certainty(), Some(unknown));
@@ -116,6 +117,6 @@ mod tests {
         assert_eq!(following.certainty(), Some(Certainty::Lost { since: 4.0, weakest: "p".to_owned() }));
         following.look(5.0, Some(&[1.9, 0.1]));
         assert_eq!(following.certainty(), Some(Certainty::Converged { since: 5.0 }));
-        assert_eq!(Following::new(&[]).certainty(), None);
+        assert_eq!(CertaintyMonitor::new(&[]).certainty(), None);
     }
 }

@@ -1,17 +1,16 @@
-//! The observer as it was derived, with its settings: what the interpreted model computes.
+//! The derived observer with its settings, as programs to be interpreted.
 
 use std::collections::BTreeMap;
 
-use pebo_cas::{Expr, Symbol};
+use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{Derivation, LeftInverse, RegressionKind};
-use pebo_design::program::Program;
+use pebo_design::program::{Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::certainty::Wanted;
-use super::request::Asked;
+use super::request::Request;
 use super::setup::Settings;
 use super::sizes::LARGEST;
-use crate::closed_loop::layout::program;
 use crate::score::SETTLED;
 
 /// An observer, ready to be interpreted.
@@ -19,7 +18,7 @@ use crate::score::SETTLED;
 pub(crate) struct Design {
     /// The states that it recovers.
     pub(crate) recovered: Vec<Symbol>,
-    /// Whether the regression is static.
+    /// True for a static regression.
     pub(crate) is_static: bool,
     /// Positions in y of the outputs whose rates the dynamic regression uses.
     pub(crate) rows: Vec<usize>,
@@ -31,13 +30,13 @@ pub(crate) struct Design {
     pub(crate) coordinates: usize,
     /// The number of equations of the regression.
     pub(crate) equations: usize,
-    /// Whether the cascade is generalised.
+    /// True for a generalised cascade.
     pub(crate) is_generalised: bool,
-    /// From y, u to h, and in a generalised cascade behind it to Lambda by rows.
+    /// From y, u to h, then Lambda by rows in a generalised cascade.
     pub(crate) cascade: Program,
-    /// From the extension, y, u to the known part of the regression, and behind it to the factor of the unknowns by rows.
+    /// From the extension, y, u to the known side of the regression, then the factor of the unknowns by rows.
     pub(crate) regression: Program,
-    /// From the extension and y to the same under the derivative, in an implicit regression.
+    /// From the extension and y to the same sides under the derivative, in an implicit regression.
     pub(crate) primitive: Option<Program>,
     /// From eta to theta.
     pub(crate) theta: Program,
@@ -45,29 +44,29 @@ pub(crate) struct Design {
     pub(crate) phi_left: Program,
     /// The number of unknowns eta of the model's regression.
     pub(crate) unknowns: usize,
-    /// What is estimated, as formulas in theta.
+    /// The estimated unknowns, as formulas in theta.
     pub(crate) unknown_names: Vec<String>,
     /// Regression and estimator.
     pub(crate) settings: Settings,
-    /// The standard errors that are wanted.
+    /// The wanted standard errors.
     pub(crate) wanted: Vec<Wanted>,
 }
 
 impl Design {
     /// The design of an accepted derivation; `numbers` are the values of the parameters.
     pub(crate) fn resolve(
-        asked: &Asked,
+        request: &Request,
         derivation: &Derivation,
         numbers: &BTreeMap<Symbol, Expr>,
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
-        let plant = asked.plant;
-        let span = asked.model.name.span;
+        let plant = request.plant;
+        let span = request.model.name.span;
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(asked, derivation, (regression, inverse), period, problems)?;
+        let settings = Settings::resolve(request, derivation, (regression, inverse), period, problems)?;
         let arena = &plant.arena;
         let regression = &regression.computed(arena, settings.output || settings.gate.is_some());
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {
@@ -83,7 +82,7 @@ impl Design {
         let lambda = cascade.lambda.as_ref().map(|rows| rows.concat()).unwrap_or_default();
         let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
         let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
-        // The unknowns of the output form are what stands under the derivative at the start, then those of z.
+        // The unknowns of the output form are the outputs under the derivative at the start, then those of z.
         let outputs = regression.rows.iter().map(|row| format!("{}(0)", arena.name(plant.y[*row].symbol)));
         let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
@@ -112,7 +111,7 @@ impl Design {
                 .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
                 .collect(),
             settings,
-            wanted: wanted(asked, inverse, problems),
+            wanted: wanted(request, inverse, problems),
         };
         problems.keep(design.admit_size(span))?;
         Some(design)
@@ -130,7 +129,7 @@ impl Design {
         self.unknown_names.len()
     }
 
-    /// Whether a value of a recovered state is beyond the bounds that `within` says of it, by more than settles.
+    /// True if a value of a recovered state is beyond its bounds in `within` by more than the tolerance of settling.
     pub(crate) fn is_outside(&self, state: usize, value: f64) -> bool {
         let [lower, upper] = &self.settings.within;
         let slack = SETTLED * value.abs();
@@ -150,11 +149,11 @@ impl Design {
     }
 }
 
-/// The standard errors that are wanted of the recovered states; of a state that is not recovered none can be had.
-fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
-    let arena = &asked.plant.arena;
+/// The wanted standard errors of the recovered states; one of another state is reported.
+fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
+    let arena = &request.plant.arena;
     let mut found = Vec::new();
-    for entry in &asked.model.observer.wanted {
+    for entry in &request.model.observer.wanted {
         let state = &entry.name.value;
         let Some(estimate) = inverse.x.iter().position(|(recovered, _)| arena.name(*recovered) == *state) else {
             let message = format!("`wanted` names `{state}`, which this observer does not recover");
@@ -167,4 +166,12 @@ fn wanted(asked: &Asked, inverse: &LeftInverse, problems: &mut Diagnostics) -> V
         found.push(Wanted { estimate, state: state.clone(), error: entry.value.value.to_f64() });
     }
     found
+}
+
+/// Lowers formulas to a program; a symbol without a value is a diagnostic at `span`.
+pub(crate) fn program(arena: &Arena, inputs: &[Symbol], outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
+    lower(arena, inputs, outputs).map_err(|undeclared| {
+        let message = format!("`{}` has no value in the simulation", arena.name(undeclared.0));
+        Diagnostic::error(Code::SimulationIncomplete, span, message).help("give its values over time under `signals`")
+    })
 }

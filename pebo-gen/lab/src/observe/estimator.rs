@@ -1,9 +1,9 @@
-//! Every estimator of the runtime library behind one face, so that the observer need not be compiled for each.
+//! Every estimator of the runtime library as one type, so that the observer need not be compiled for each.
 //!
 //! A model is padded with zeros to one of a few sizes. Zero rows and columns of a regressor change no estimate of a
-//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: what its extension has to
-//! say of the padding is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled
-//! once for each size, not for every number of unknowns.
+//! gradient or of least squares. The determinant of DREM would be zero with a column of zeros: the padded block of its
+//! extension is replaced by the identity, which leaves the determinant that of the unknowns. So each is compiled once
+//! for each size, not for every number of unknowns.
 
 use std::fmt;
 
@@ -16,21 +16,21 @@ use pebo_runtime::{
 use super::setup::{self, Covariance, Extension};
 use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
 
-/// An estimator of a model that was padded to the size N.
-/// Not behind a pointer where that can be: the observer works on a copy in each step.
+/// An estimator of a model padded to the size N. Not behind a pointer where that can be: the observer works on a copy
+/// in each step.
 #[derive(Debug)]
-pub(crate) enum Chosen<const N: usize> {
+pub(crate) enum PaddedEstimator<const N: usize> {
     Gradient(Gradient<f64, N>),
     Normalised(NormalisedGradient<f64, N>),
-    /// The one that knows how uncertain it is.
+    /// The one with a covariance.
     Squares(LeastSquares<f64, N>),
-    Mixed(Box<dyn Face<N>>),
+    Mixed(Box<dyn DynEstimator<N>>),
 }
 
-impl<const N: usize> Chosen<N> {
+impl<const N: usize> PaddedEstimator<N> {
     /// The estimator with its settings, which have a value for each of the unknowns.
     pub(crate) fn new(settings: &setup::Estimator) -> Result<Self, Fault> {
-        // What is set for a padded unknown has no effect, but must be positive.
+        // Settings of a padded unknown have no effect, but must be positive.
         let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
         Ok(match settings {
             setup::Estimator::Gradient(gain) => Self::Gradient(Gradient::diagonal(&all(gain))?),
@@ -47,13 +47,13 @@ impl<const N: usize> Chosen<N> {
             setup::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
                 Self::Mixed(mixed(gain, extension)?)
             }
-            // Refused with the settings.
+            // Refused when the settings are resolved.
             setup::Estimator::Drem { .. } => return Err(Fault::Gain),
         })
     }
 }
 
-impl<const N: usize> Clone for Chosen<N> {
+impl<const N: usize> Clone for PaddedEstimator<N> {
     fn clone(&self) -> Self {
         match self {
             Self::Gradient(gradient) => Self::Gradient(*gradient),
@@ -64,8 +64,8 @@ impl<const N: usize> Clone for Chosen<N> {
     }
 }
 
-impl<const N: usize> Chosen<N> {
-    fn face(&self) -> &dyn Face<N> {
+impl<const N: usize> PaddedEstimator<N> {
+    fn face(&self) -> &dyn DynEstimator<N> {
         match self {
             Self::Gradient(gradient) => gradient,
             Self::Normalised(gradient) => gradient,
@@ -74,7 +74,7 @@ impl<const N: usize> Chosen<N> {
         }
     }
 
-    fn face_mut(&mut self) -> &mut dyn Face<N> {
+    fn face_mut(&mut self) -> &mut dyn DynEstimator<N> {
         match self {
             Self::Gradient(gradient) => gradient,
             Self::Normalised(gradient) => gradient,
@@ -84,7 +84,7 @@ impl<const N: usize> Chosen<N> {
     }
 }
 
-impl<const N: usize> Uncertain<f64, N> for Chosen<N> {
+impl<const N: usize> Uncertain<f64, N> for PaddedEstimator<N> {
     fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
         match self {
             Self::Squares(squares) => squares.covariance_root(dt),
@@ -93,7 +93,7 @@ impl<const N: usize> Uncertain<f64, N> for Chosen<N> {
     }
 }
 
-impl<const N: usize> Estimator<f64, N, N> for Chosen<N> {
+impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
         self.face_mut().advance(regressor, regressand, dt)
     }
@@ -119,18 +119,18 @@ impl<const N: usize> Estimator<f64, N, N> for Chosen<N> {
     }
 }
 
-/// An estimator whose type is not known.
-pub(crate) trait Face<const N: usize>: fmt::Debug {
+/// An estimator as a trait object.
+pub(crate) trait DynEstimator<const N: usize>: fmt::Debug {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault>;
     fn estimate(&self) -> SVector<f64, N>;
     fn shift(&mut self, shift: &SVector<f64, N>);
     fn turn(&mut self, turn: &Turn<f64, N>);
     fn reset(&mut self, estimate: &SVector<f64, N>);
     fn is_finite(&self) -> bool;
-    fn boxed(&self) -> Box<dyn Face<N>>;
+    fn boxed(&self) -> Box<dyn DynEstimator<N>>;
 }
 
-impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> Face<N> for E {
+impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> DynEstimator<N> for E {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
         Estimator::advance(self, regressor, regressand, dt)
     }
@@ -155,17 +155,17 @@ impl<E: Estimator<f64, N, N> + fmt::Debug + 'static, const N: usize> Face<N> for
         Estimator::is_finite(self)
     }
 
-    fn boxed(&self) -> Box<dyn Face<N>> {
+    fn boxed(&self) -> Box<dyn DynEstimator<N>> {
         Box::new(self.clone())
     }
 }
 
 /// DREM of as many unknowns as there are gains.
-fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn Face<N>>, Fault> {
-    // Padding has no error to lose, and with the largest gain it is never what a finite-time estimator waits for.
+fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn DynEstimator<N>>, Fault> {
+    // Padding has no error to lose, and with the largest gain a finite-time estimator never waits for it.
     let gains = padded(gain, gain.iter().copied().fold(f64::MIN_POSITIVE, f64::max));
     let all = |values: &[f64]| -> SVector<f64, MOST_MIXED> { padded(values, 1.0) };
-    let (extension, finite_time): (Box<dyn Extended>, _) = match extension {
+    let (extension, finite_time): (Box<dyn DynExtension>, _) = match extension {
         Extension::Kreisselmeier { gain, forgetting, finite_time } => {
             (Box::new(Kreisselmeier::new(&all(gain), *forgetting)?), finite_time.as_ref())
         }
@@ -174,12 +174,12 @@ fn mixed<const N: usize>(gain: &[f64], extension: &Extension) -> Result<Box<dyn 
             (Box::new(response(LeastSquares::diagonal(&all(start), *forgetting)?)?), None)
         }
     };
-    let drem = Drem::new(Completed { extension, unknowns: gain.len() }, &gains)?;
+    let drem = Drem::new(CompletedExtension { extension, unknowns: gain.len() }, &gains)?;
     Ok(match finite_time {
-        None => Box::new(Wide(drem)),
-        Some(setup::FiniteTime { clip, period: None }) => Box::new(Wide(FiniteTime::once(drem, *clip)?)),
+        None => Box::new(PaddedDrem(drem)),
+        Some(setup::FiniteTime { clip, period: None }) => Box::new(PaddedDrem(FiniteTime::once(drem, *clip)?)),
         Some(setup::FiniteTime { clip, period: Some(period) }) => {
-            Box::new(Wide(FiniteTime::tracking(drem, *clip, *period)?))
+            Box::new(PaddedDrem(FiniteTime::tracking(drem, *clip, *period)?))
         }
     })
 }
@@ -191,8 +191,8 @@ where
     Response::new(estimator)
 }
 
-/// A regressor extension whose type is not known.
-trait Extended: fmt::Debug {
+/// A regressor extension as a trait object.
+trait DynExtension: fmt::Debug {
     fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault>;
     fn matrix(&self) -> SMatrix<f64, MOST_MIXED, MOST_MIXED>;
     fn vector(&self) -> SVector<f64, MOST_MIXED>;
@@ -200,13 +200,13 @@ trait Extended: fmt::Debug {
     fn turn(&mut self, turn: &Turn<f64, MOST_MIXED>);
     fn reset(&mut self);
     fn is_finite(&self) -> bool;
-    fn boxed(&self) -> Box<dyn Extended>;
+    fn boxed(&self) -> Box<dyn DynExtension>;
 }
 
 /// The equations of DREM, padded to the largest size.
 type Rows = SMatrix<f64, LARGEST, MOST_MIXED>;
 
-impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Extended for X {
+impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> DynExtension for X {
     fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
         RegressorExtension::advance(self, regressor, regressand, dt)
     }
@@ -235,25 +235,25 @@ impl<X: RegressorExtension<f64, LARGEST, MOST_MIXED> + fmt::Debug + 'static> Ext
         RegressorExtension::is_finite(self)
     }
 
-    fn boxed(&self) -> Box<dyn Extended> {
+    fn boxed(&self) -> Box<dyn DynExtension> {
         Box::new(self.clone())
     }
 }
 
-/// An extension of a padded regression, with the identity where the padding is.
+/// An extension of a padded regression, with the identity for the padding.
 #[derive(Debug)]
-struct Completed {
-    extension: Box<dyn Extended>,
+struct CompletedExtension {
+    extension: Box<dyn DynExtension>,
     unknowns: usize,
 }
 
-impl Clone for Completed {
+impl Clone for CompletedExtension {
     fn clone(&self) -> Self {
         Self { extension: self.extension.boxed(), unknowns: self.unknowns }
     }
 }
 
-impl RegressorExtension<f64, LARGEST, MOST_MIXED> for Completed {
+impl RegressorExtension<f64, LARGEST, MOST_MIXED> for CompletedExtension {
     fn advance(&mut self, regressor: &Rows, regressand: &SVector<f64, LARGEST>, dt: f64) -> Result<(), Fault> {
         self.extension.advance(regressor, regressand, dt)
     }
@@ -285,12 +285,12 @@ impl RegressorExtension<f64, LARGEST, MOST_MIXED> for Completed {
     }
 }
 
-/// DREM in a padded model, of which it takes the unknowns that there may be. Its equations are padded to the largest
+/// DREM in a padded model. It takes the first unknowns, up to its own size; its equations are padded to the largest
 /// size.
 #[derive(Clone, Debug)]
-struct Wide<E>(E);
+struct PaddedDrem<E>(E);
 
-impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N> for Wide<E> {
+impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N> for PaddedDrem<E> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
         let mut rows = Rows::zeros();
         for (mut wide, column) in rows.column_iter_mut().zip(regressor.column_iter()) {
@@ -308,7 +308,7 @@ impl<E: Estimator<f64, LARGEST, MOST_MIXED>, const N: usize> Estimator<f64, N, N
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {
-        // What one of the sizes has beyond the other is padding, which no turn mixes with the unknowns.
+        // The difference of the sizes is padding, which no turn mixes with the unknowns.
         self.0.turn(&turn.leading());
     }
 

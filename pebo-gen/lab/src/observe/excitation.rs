@@ -1,14 +1,14 @@
-//! Whether the data determine the unknown.
+//! Judges whether the data determine the unknown.
 //!
-//! In: the regressors that an estimator is given. Out: since when they tell all components of the unknown apart, or which
-//! one they do not. It is asked of the sum of their squares, from which the estimator forgets as it does itself:
+//! In: the regressors of an estimator. Out: the time since which they distinguish all components of the unknown, or the
+//! one that they do not. Computed from their Gramian, with the estimator's own forgetting:
 //!
 //! ```text
 //! G' = -beta G + Phi^T Phi        1 - R^2 of component i = 1/(G_ii (G^-1)_ii)
 //! ```
 //!
-//! which is the share of what the data say of a component that the other components cannot explain. The standard error of
-//! each state beside one that is wanted says more, but of sensors whose standard deviations are known (`certainty`).
+//! which is the share of a component's data that the other components do not explain. The standard error of each state
+//! beside the wanted one says more, but needs sensors of known standard deviations (`certainty`).
 //!
 //! Source: Belsley, Kuh, Welsch, *Regression diagnostics*, 1980, chapter 3 (variance inflation).
 
@@ -16,51 +16,51 @@ use pebo_runtime::Turn;
 use pebo_runtime::nalgebra::SMatrix;
 use serde::Serialize;
 
-/// The share below which a component is not told apart: its standard error is then a thousand times what it would be if the
-/// other components were known.
+/// The share below which a component is not distinguished: its standard error is then a thousand times as large as with
+/// the other components known.
 const ENOUGH: f64 = 1e-6;
 
 /// A share below this is rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// A sum of squares this large is made smaller, all of it: what a dying fundamental matrix carries along grows without end.
+/// A Gramian beyond this is scaled down: turns by a dying fundamental matrix let it grow without end.
 const LARGE: f64 = 1e150;
 
-/// What the data are good for.
+/// The excitation by the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "state", rename_all = "kebab-case")]
 pub enum Excitation {
     /// They never determined the unknown.
     NotYet {
-        /// The component of the unknown that is told apart least.
+        /// The component of the unknown that is distinguished least.
         weakest: String,
     },
-    /// They do.
+    /// The data determine the unknown.
     Converged {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
     },
-    /// They did, and the estimator has forgotten since.
+    /// They did, and the estimator has forgotten them since.
     Lost {
-        /// Since when, in seconds.
+        /// The time since then, in seconds.
         since: f64,
-        /// The component of the unknown that is told apart least.
+        /// The component of the unknown that is distinguished least.
         weakest: String,
     },
 }
 
-/// The sum of squares of the regressors.
+/// The Gramian of the regressors.
 #[derive(Clone, Debug)]
-pub(crate) struct Information<const N: usize> {
+pub(crate) struct Gramian<const N: usize> {
     unknowns: usize,
     forgetting: f64,
     gramian: SMatrix<f64, N, N>,
-    /// Whether its size still tells how much data there is.
+    /// True while its size measures the amount of data.
     is_measure: bool,
 }
 
-impl<const N: usize> Information<N> {
-    /// Before any data; forgetting is in 1/s.
+impl<const N: usize> Gramian<N> {
+    /// The Gramian before any data; forgetting is in 1/s.
     pub(crate) fn new(unknowns: usize, forgetting: f64) -> Self {
         Self { unknowns, forgetting, gramian: SMatrix::zeros(), is_measure: forgetting > 0.0 }
     }
@@ -70,8 +70,8 @@ impl<const N: usize> Information<N> {
         let kept = if self.forgetting > 0.0 { (-self.forgetting * dt).exp() } else { 1.0 };
         for i in 0..self.unknowns {
             for j in 0..=i {
-                let seen = regressor.column(i).dot(&regressor.column(j)) * dt;
-                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + seen;
+                let product = regressor.column(i).dot(&regressor.column(j)) * dt;
+                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + product;
                 self.gramian[(j, i)] = self.gramian[(i, j)];
             }
         }
@@ -91,17 +91,18 @@ impl<const N: usize> Information<N> {
         self.gramian.fill(0.0);
     }
 
-    /// What the data say of each component.
-    pub(crate) fn said(&self) -> Said {
+    /// The information on each component.
+    pub(crate) fn component_information(&self) -> ComponentInformation {
         let data: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)]).collect();
         let shares = (0..self.unknowns).map(|i| if data[i] > 0.0 { self.share(i, &data) } else { 0.0 }).collect();
-        // What nobody forgets, nobody loses.
-        Said { data: if self.is_measure { data } else { Vec::new() }, shares }
+        // Without forgetting nothing is lost.
+        ComponentInformation { data: if self.is_measure { data } else { Vec::new() }, shares }
     }
 
-    /// What is said of a component that the others do not explain, 0 to 1.
+    /// The share of a component's data that the others do not explain, 0 to 1.
     ///
-    /// Method: Gauss elimination of the correlations, the largest pivot first and the component last, whose pivot it is.
+    /// Method: Gauss elimination of the correlations, the largest pivot first and the component last, whose pivot it
+    /// is.
     fn share(&self, component: usize, data: &[f64]) -> f64 {
         let mut rest = SMatrix::<f64, N, N>::zeros();
         for i in (0..self.unknowns).filter(|i| data[*i] > 0.0) {
@@ -131,10 +132,10 @@ impl<const N: usize> Information<N> {
     }
 }
 
-/// What the data say of each component of the unknown.
+/// The information of the data on each component of the unknown.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Said {
-    /// What the others do not explain, 0 to 1.
+pub(crate) struct ComponentInformation {
+    /// The shares that the others do not explain, 0 to 1.
     shares: Vec<f64>,
     /// The sum of squares; empty where nothing is forgotten.
     data: Vec<f64>,
@@ -142,10 +143,10 @@ pub(crate) struct Said {
 
 /// The excitation as time goes on.
 #[derive(Debug, Default)]
-pub(crate) struct Watch {
+pub(crate) struct ExcitationMonitor {
     state: State,
     weakest: usize,
-    /// Of each component the variance that was just enough when all were determined first, in units of the noise.
+    /// The variance of each component that was just enough when all were determined first, in units of the noise.
     enough: Vec<f64>,
 }
 
@@ -157,25 +158,25 @@ enum State {
     Lost(f64),
 }
 
-impl Watch {
-    /// Looks at the data at this instant.
+impl ExcitationMonitor {
+    /// Takes the information at this instant.
     ///
-    /// Lost is judged by what the data say of a component, and not by its share alone: where the extension starts again
-    /// from the estimate, old data of a state that dies out become ever more certain, and all others small beside them.
-    pub(crate) fn look(&mut self, t: f64, said: &Said) {
+    /// Loss is judged by a component's data, and not by its share alone: where the extension starts again from the
+    /// estimate, old data of a state that dies out become ever more certain, and all others small beside them.
+    pub(crate) fn look(&mut self, t: f64, information: &ComponentInformation) {
         let least = |values: &mut dyn Iterator<Item = f64>| {
             values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
-        let (weakest, share) = least(&mut said.shares.iter().copied());
-        let known = said.data.iter().zip(&said.shares).map(|(data, share)| data * share.max(ROUNDING));
+        let (weakest, share) = least(&mut information.shares.iter().copied());
+        let known = information.data.iter().zip(&information.shares).map(|(data, share)| data * share.max(ROUNDING));
         let (faintest, certainty) = least(&mut known.zip(&self.enough).map(|(known, enough)| known * enough));
-        let is_lost = !said.data.is_empty() && certainty < 0.5;
+        let is_lost = !information.data.is_empty() && certainty < 0.5;
         match self.state {
             State::NotYet => {
                 self.weakest = weakest;
                 if share >= ENOUGH {
                     self.state = State::Converged(t);
-                    self.enough = said.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
+                    self.enough = information.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
                 }
             }
             State::Converged(_) if is_lost && !self.enough.is_empty() => {
@@ -186,7 +187,7 @@ impl Watch {
         }
     }
 
-    /// What the data are good for, with the names of the components.
+    /// The excitation, with the names of the components.
     pub(crate) fn excitation(&self, names: &[String]) -> Excitation {
         let weakest = names.get(self.weakest).cloned().unwrap_or_default();
         match self.state {
@@ -201,7 +202,7 @@ impl Watch {
 mod tests {
     use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-    use super::{Excitation, Information, Watch};
+    use super::{Excitation, ExcitationMonitor, Gramian};
 
     /// One equation `[cos a, sin a, 0]` of two unknowns, padded.
     fn row(angle: f64) -> SMatrix<f64, 3, 3> {
@@ -215,8 +216,8 @@ mod tests {
     }
 
     #[test]
-    fn the_share_is_what_the_others_do_not_explain() {
-        let mut information = Information::<3>::new(2, 0.0);
+    fn the_share_is_unexplained_by_the_others() {
+        let mut information = Gramian::<3>::new(2, 0.0);
         for angle in [0.3, 0.9] {
             information.add(&row(angle), 0.1);
         }
@@ -225,20 +226,20 @@ mod tests {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let expected =
             1.0 - dot(columns[0], columns[1]).powi(2) / dot(columns[0], columns[0]) / dot(columns[1], columns[1]);
-        let said = information.said();
-        assert!(said.shares.iter().all(|share| (share - expected).abs() < 1e-12), "{said:?} {expected}");
+        let information = information.component_information();
+        assert!(information.shares.iter().all(|share| (share - expected).abs() < 1e-12), "{information:?} {expected}");
     }
 
     #[test]
     fn excitation_comes_and_goes_with_the_data() {
-        let (mut information, mut watch) = (Information::<3>::new(2, 1.0), Watch::default());
+        let (mut information, mut watch) = (Gramian::<3>::new(2, 1.0), ExcitationMonitor::default());
         let mut states = Vec::new();
         for step in 0..600_u32 {
             let t = f64::from(step) * 0.1;
             // The regressor turns between 10 and 20 s, and stands at 0.5 before and after.
             let angle = 0.5 + (t - 10.0).clamp(0.0, 10.0);
             information.add(&row(angle), 0.1);
-            watch.look(t, &information.said());
+            watch.look(t, &information.component_information());
             states.push(watch.excitation(&names()));
         }
         assert!(matches!(&states[99], Excitation::NotYet { .. }), "{:?}", states[99]);
@@ -247,16 +248,16 @@ mod tests {
             "{:?}",
             states[250]
         );
-        // exp(-t) of the turning is left: a millionth after 14 s or so.
+        // exp(-t) of the turning remains: a millionth after 14 s or so.
         let Excitation::Lost { since, .. } = &states[599] else { panic!("{:?}", states[599]) };
         assert!((30.0..40.0).contains(since), "{since}");
     }
 
     #[test]
     fn a_component_without_data_is_named() {
-        let (mut information, mut watch) = (Information::<3>::new(2, 0.0), Watch::default());
+        let (mut information, mut watch) = (Gramian::<3>::new(2, 0.0), ExcitationMonitor::default());
         information.add(&row(0.0), 1.0);
-        watch.look(0.0, &information.said());
+        watch.look(0.0, &information.component_information());
         assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });
     }
 }

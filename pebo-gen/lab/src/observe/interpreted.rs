@@ -1,8 +1,7 @@
 //! The runtime library's observer on a derived model that is interpreted.
 //!
-//! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of
-//! a few sizes; zero rows and columns change no estimate. What runs here is the code that runs on the
-//! target, but for the functions of the model.
+//! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of a few sizes;
+//! zero rows and columns change no estimate. The code is that of the target, except for the functions of the model.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -19,41 +18,42 @@ use pebo_design::plant::settings::PATIENCE;
 use pebo_design::program::{Interpreter, Program};
 
 use super::design::Design;
-use super::excitation::Said;
-use super::information::Watched;
+use super::excitation::ComponentInformation;
+use super::monitored::MonitoredEstimator;
+use super::operator::PaddedOperator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
-use super::uncertainty::{Interval, Told, Uncertainty};
-use super::window::Passage;
+use super::uncertainty::{Interval, NoiseModel, Uncertainty};
 
-/// An observer of some size.
-pub(crate) trait Estimation: fmt::Debug {
-    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An output
-    /// that is missing is NaN, where [`has_parts`](Self::has_parts).
+/// An observer of any size.
+pub(crate) trait DynObserver: fmt::Debug {
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An
+    /// output that is missing is NaN, where [`admits_partial`](Self::admits_partial).
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
 
-    /// Whether a sample may lack outputs.
-    fn has_parts(&self) -> bool;
+    /// True if a sample may lack outputs.
+    fn admits_partial(&self) -> bool;
 
-    /// The standard errors of the estimates, if the last sample is so many seconds old; nothing where they are not known.
+    /// The standard errors of the estimates, `age` seconds after the last sample; none where they are not known.
     fn standard_errors(&self, age: f64) -> Option<Vec<f64>>;
 
-    /// How often it began anew after a gap that was too long.
+    /// The number of restarts after gaps that were too long.
     fn restarts(&self) -> u64;
 
-    /// How far a sample is from what is expected of it: the normalised square of its innovation, of each row on average.
+    /// The normalised square of a sample's innovation, divided by the number of rows.
     fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
 
-    /// What the data so far say of each component of the unknown.
-    fn said(&self) -> Said;
+    /// The information of the data so far on each component of the unknown.
+    fn component_information(&self) -> ComponentInformation;
 
-    /// The coordinates z that a value of theta gives with the extension as it is.
+    /// The coordinates z for a value of theta with the present extension.
     #[cfg(test)]
     fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
 }
 
-/// The observer of a design, of the smallest size that has room for it: a step takes time as the square of that, or its cube.
-pub(crate) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+/// The observer of a design, of the smallest size that has room for it: a step costs the square of the size, or its
+/// cube.
+pub(crate) fn observer(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
     const FEW: usize = SMALL[0];
     const SOME: usize = SMALL[1];
     let size = design.size();
@@ -68,20 +68,20 @@ pub(crate) fn observer(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
     }
 }
 
-fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn Estimation>, Fault> {
+fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
     if design.settings.output {
-        return Ok(Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?));
+        return Ok(Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?));
     }
     Ok(match (design.is_generalised, design.is_static) {
-        (false, false) => Box::new(Padded::<Integrator<f64, N>, Dynamic, N>::new(design)?),
-        (false, true) => Box::new(Padded::<Integrator<f64, N>, Static, N>::new(design)?),
-        (true, false) => Box::new(Padded::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
-        (true, true) => Box::new(Padded::<Fundamental<f64, N>, Static, N>::new(design)?),
+        (false, false) => Box::new(PaddedObserver::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(PaddedObserver::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(PaddedObserver::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?),
     })
 }
 
 /// The kind of a regression, as a type.
-trait Kind: fmt::Debug + 'static {
+trait RegressionType: fmt::Debug + 'static {
     const REGRESSION: Regression;
 }
 
@@ -90,24 +90,24 @@ struct Dynamic;
 #[derive(Debug)]
 struct Static;
 
-impl Kind for Dynamic {
+impl RegressionType for Dynamic {
     const REGRESSION: Regression = Regression::Dynamic;
 }
 
-impl Kind for Static {
+impl RegressionType for Static {
     const REGRESSION: Regression = Regression::Static;
 }
 
-/// An extension that shows what the regression depends on.
-trait Known<const N: usize>: Extension<f64, N> + 'static {
-    /// A number of an extension of `n` coordinates: one of these, or behind them of its fundamental matrix by rows.
+/// An extension whose numbers the regression can read.
+trait ReadableExtension<const N: usize>: Extension<f64, N> + 'static {
+    /// A number of an extension of `n` coordinates: one of these, or after them of its fundamental matrix by rows.
     fn value(&self, n: usize, place: usize) -> f64;
 
-    /// What stands for z beside theta, and the factor of theta.
+    /// The offset of z, and the factor of theta.
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
 }
 
-impl<const N: usize> Known<N> for Integrator<f64, N> {
+impl<const N: usize> ReadableExtension<N> for Integrator<f64, N> {
     fn value(&self, _: usize, place: usize) -> f64 {
         self.chi()[place]
     }
@@ -117,7 +117,7 @@ impl<const N: usize> Known<N> for Integrator<f64, N> {
     }
 }
 
-impl<const N: usize> Known<N> for Fundamental<f64, N> {
+impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
     fn value(&self, n: usize, place: usize) -> f64 {
         if place < n { self.xi()[place] } else { self.psi()[((place - n) / n, (place - n) % n)] }
     }
@@ -127,7 +127,8 @@ impl<const N: usize> Known<N> for Fundamental<f64, N> {
     }
 }
 
-/// The model of a design. The trait's methods take `&self`, an interpreter's table does not: hence the cells.
+/// The model of a design. The trait's methods take `&self`, but an interpreter needs its table mutable: hence the
+/// cells.
 #[derive(Debug)]
 struct Derived<X, K, const N: usize> {
     ny: usize,
@@ -145,12 +146,12 @@ struct Derived<X, K, const N: usize> {
     /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
     output: Option<(usize, X)>,
-    /// There, the places of the outputs that estimates are made of as they are expected.
+    /// In the output form: the indices of the outputs whose expected values estimates are made of.
     expected: Option<Vec<usize>>,
     kind: PhantomData<(X, K)>,
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N> {
     fn new(design: &Design) -> Self {
         let nz = design.coordinates;
         Self {
@@ -179,12 +180,12 @@ impl<X: Known<N>, K: Kind, const N: usize> Derived<X, K, N> {
         Flow { lambda: rows(&mut values, self.nz), h }
     }
 
-    /// The sides of the model's own regression; in the output form, as a function of z.
+    /// The sides of the model's own regression; in the output form, functions of z.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         self.both(&mut self.regression.borrow_mut(), extension, y, u)
     }
 
-    /// Both sides of equations by the function that has their values: what is known, then the factor by rows.
+    /// Both sides of equations by a program: the known side, then the factor by rows.
     fn both(
         &self,
         function: &mut Interpreter,
@@ -207,7 +208,7 @@ fn interpreter(program: &Program) -> RefCell<Interpreter> {
     RefCell::new(Interpreter::new(program))
 }
 
-/// The next `n` values, and zeros behind them.
+/// The next `n` values, padded with zeros.
 fn column<const N: usize>(values: &mut impl Iterator<Item = f64>, n: usize) -> SVector<f64, N> {
     let mut padded = SVector::zeros();
     for (place, value) in values.take(n).enumerate() {
@@ -216,7 +217,7 @@ fn column<const N: usize>(values: &mut impl Iterator<Item = f64>, n: usize) -> S
     padded
 }
 
-/// All values that are left as rows of so many columns, and zeros besides.
+/// All remaining values as rows of this number of columns, padded with zeros.
 fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) -> SMatrix<f64, N, N> {
     let mut padded = SMatrix::zeros();
     let (mut row, mut column) = (0, 0);
@@ -230,7 +231,7 @@ fn rows<const N: usize>(values: &mut impl Iterator<Item = f64>, columns: usize) 
     padded
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, N, N, N> for Derived<X, K, N> {
     type Scalar = f64;
     type Extension = X;
     type X = SVector<Self::Scalar, N>;
@@ -294,9 +295,9 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
         if self.output.is_none() {
             return *extension;
         }
-        let seen = self.regression(extension, y, &SVector::zeros()).known;
+        let known = self.regression(extension, y, &SVector::zeros()).known;
         let mut begun = *extension;
-        begun.rebase(&-seen);
+        begun.rebase(&-known);
         begun
     }
 
@@ -311,39 +312,52 @@ impl<X: Known<N>, K: Kind, const N: usize> Model<N, N, N, N, N, N> for Derived<X
     }
 }
 
-/// The promise is kept by those who ask for re-basing: a design has it only where it is proved.
-impl<X: Known<N>, K: Kind, const N: usize> pebo_runtime::Rebase<N, N, N, N, N> for Derived<X, K, N> {}
+/// A design is re-based only where the condition is proved.
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> pebo_runtime::Rebase<N, N, N, N, N>
+    for Derived<X, K, N>
+{
+}
 
-type Inner<X, K, const N: usize> =
-    Observer<Within<Derived<X, K, N>, f64, N>, Bounded<f64, Watched<N>, N>, N, N, N, N, N, N, Passage<N>>;
+type Inner<X, K, const N: usize> = Observer<
+    Within<Derived<X, K, N>, f64, N>,
+    Bounded<f64, MonitoredEstimator<N>, N>,
+    N,
+    N,
+    N,
+    N,
+    N,
+    N,
+    PaddedOperator<N>,
+>;
 
 /// The runtime's observer at size N.
-struct Padded<X: Known<N>, K: Kind, const N: usize> {
+struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize> {
     observer: Inner<X, K, N>,
-    /// What refuses outliers.
+    /// Refuses outliers.
     gate: Option<Gate<f64>>,
-    /// What refuses samples off their range, and says when a gap was too long.
+    /// Refuses samples out of range, and finds gaps that are too long.
     limits: Option<Limits<f64, N, N>>,
     /// The extension at the start.
     chi_0: SVector<f64, N>,
-    /// How often it began anew.
+    /// The number of restarts.
     restarts: u64,
-    /// The place of the output of each row, where rows may be left out.
+    /// The index of each row's output, where rows may be left out.
     rows: Option<[usize; N]>,
     /// The recovered states, and the rows of the regression.
     sizes: (usize, usize),
-    /// Whether errors are predicted from what is known of the sensors.
+    /// True if errors are predicted from the known numbers of the sensors.
     is_certain: bool,
-    /// By how much the estimates err, where the noise of a sample is elsewhere than in its row too.
+    /// The covariance of the errors, where the noise of a sample is not only in its row.
     uncertainty: Option<Uncertainty<N>>,
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<X, K, N> {
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator = Bounded::new(Watched::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
-        let passage = Passage::new(settings)?;
+        let estimator =
+            Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let passage = PaddedOperator::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
@@ -363,16 +377,16 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.equations),
             is_certain: matches!(settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_))),
-            uncertainty: told(design, whole).map(|told| Uncertainty::new(&told)),
+            uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
         })
     }
 
-    /// The estimate of z as the extension has it.
+    /// The estimate of z with the present extension.
     fn coordinates_now(&self) -> SVector<f64, N> {
         self.observer.extension().coordinates(&self.observer.theta())
     }
 
-    /// A step of the observer, which may lack outputs that have these rows.
+    /// A step of the observer; with `parted`, outputs that have these rows may be missing.
     fn step(&mut self, y: &[f64], parted: Option<[usize; N]>, u: &[f64], dt: f64) -> Result<SVector<f64, N>, Fault> {
         match parted {
             Some(rows) => self.observer.step_partly(pad(y), &rows, pad(u), dt),
@@ -380,7 +394,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
         }
     }
 
-    /// Follows a step with what its sample errs by.
+    /// Propagates the covariance over a step.
     fn follow(&mut self, before: Option<(SVector<f64, N>, SVector<f64, N>)>, y: &[f64], u: &[f64], dt: f64) {
         let (Some(uncertainty), Some(after)) = (&mut self.uncertainty, self.observer.terms()) else { return };
         let (model, u) = (self.observer.model(), pad(u));
@@ -397,15 +411,15 @@ impl<X: Known<N>, K: Kind, const N: usize> Padded<X, K, N> {
     }
 }
 
-/// What is told of the noise of a design, where that of a sample is elsewhere than in its row too.
-fn told(design: &Design, whole: bool) -> Option<Told> {
+/// The noise model of a design, where the noise of a sample is not only in its row.
+fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
     let settings = &design.settings;
     let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
         (&settings.prediction, &settings.operator, &settings.estimator)
     else {
         return None;
     };
-    Some(Told {
+    Some(NoiseModel {
         sensors: noise.sensors.clone(),
         weights: weights.clone(),
         start: start.clone(),
@@ -415,7 +429,7 @@ fn told(design: &Design, whole: bool) -> Option<Told> {
     })
 }
 
-/// The limits of a run, as the runtime has them.
+/// The limits of a run in the runtime's type.
 fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fault> {
     let side = |each: &[Option<[f64; 2]>], side: usize, other: f64| {
         let values: Vec<f64> = each.iter().map(|limit| limit.map_or(other, |limit| limit[side])).collect();
@@ -432,18 +446,18 @@ fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fa
     }
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> fmt::Debug for Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> fmt::Debug for PaddedObserver<X, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Padded").field(self.observer.model()).finish()
     }
 }
 
-impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for PaddedObserver<X, K, N> {
     fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         if let Some(limits) = &self.limits {
-            // What is missing is in no range: it is left out, or refused for that.
-            let seen = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
-            match limits.check(&pad(&seen), &pad(u), dt) {
+            // A missing output is in no range: it is left out, or refused for that.
+            let present = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
+            match limits.check(&pad(&present), &pad(u), dt) {
                 Err(Fault::Gap) => {
                     self.observer.restart(self.chi_0, &SVector::zeros())?;
                     self.restarts += 1;
@@ -469,7 +483,7 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         Ok(())
     }
 
-    fn has_parts(&self) -> bool {
+    fn admits_partial(&self) -> bool {
         self.rows.is_some()
     }
 
@@ -501,8 +515,8 @@ impl<X: Known<N>, K: Kind, const N: usize> Estimation for Padded<X, K, N> {
         self.restarts
     }
 
-    fn said(&self) -> Said {
-        self.observer.estimator().estimator().said()
+    fn component_information(&self) -> ComponentInformation {
+        self.observer.estimator().estimator().component_information()
     }
 
     #[cfg(test)]

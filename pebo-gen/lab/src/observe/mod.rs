@@ -2,13 +2,13 @@
 
 pub(crate) mod certainty;
 pub(crate) mod design;
+pub(crate) mod driver;
 pub(crate) mod estimator;
 pub(crate) mod excitation;
-mod information;
 pub(crate) mod interpreted;
+mod monitored;
+pub(crate) mod operator;
 pub(crate) mod request;
 pub(crate) mod setup;
 pub(crate) mod sizes;
-pub(crate) mod stepping;
 mod uncertainty;
-pub(crate) mod window;

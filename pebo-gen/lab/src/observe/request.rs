@@ -1,4 +1,4 @@
-//! On whose behalf an observer is made, and where it is said what that lacks.
+//! The request for an observer: its model and plant, and the section of the run that needs it.
 
 use std::collections::BTreeMap;
 
@@ -7,18 +7,18 @@ use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-/// What an observer is made from, for a run of some kind.
+/// The request for an observer, by a run of some kind.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked<'a> {
+pub(crate) struct Request<'a> {
     pub(crate) model: &'a Model,
     pub(crate) plant: &'a Plant,
-    /// Where the run is described, for what is missing there.
+    /// The section that describes the run, for complaints about missing keys.
     pub(crate) section: Span,
-    /// What needs the observer: `the simulation`.
+    /// The subject of complaints: `the simulation`.
     pub(crate) who: &'static str,
 }
 
-impl Asked<'_> {
+impl Request<'_> {
     /// The values of the parameters that have one.
     pub(crate) fn numbers(&self) -> BTreeMap<Symbol, Expr> {
         let given = self.plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.clone()?)));

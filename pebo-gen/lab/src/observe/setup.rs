@@ -1,72 +1,72 @@
-//! The section `observer`, complete: what regression and estimator are run with.
+//! The settings of regression and estimator in a run: the section `observer`, completed.
 
 use pebo_runtime::{Drift, Hold};
 
-use crate::settings::{Known, Prediction, Tuned, start};
+use crate::settings::{DerivedSettings, KnownNumbers, Prediction, start};
 use pebo_cas::Rational;
 use pebo_design::analysis::{Derivation, LeftInverse, Regression};
 use pebo_design::model::{self, Decimal, Observer};
 use pebo_design::plant::settings;
 use pebo_design::source::{Code, Diagnostic, Diagnostics};
 
-use super::request::Asked;
+use super::request::Request;
 use super::sizes::{LONGEST, MOST_MIXED};
 
-/// Settings of an observer, with a value for each unknown where there may be one.
+/// Settings of an observer, with lists expanded to one value for each unknown.
 #[derive(Clone, Debug)]
 pub(crate) struct Settings {
-    /// What the regression goes through.
+    /// The operator of the regression.
     pub(crate) operator: Operator,
-    /// Whether the outputs themselves are the regressand.
+    /// True in the output form, where the outputs themselves are the regressand.
     pub(crate) output: bool,
-    /// The places of the outputs of the rows, where estimates are made of the outputs that are expected.
+    /// The indices of the rows' outputs, where estimates are made of the expected outputs.
     pub(crate) expected: Option<Vec<usize>>,
-    /// How samples are joined.
+    /// The hold between samples.
     pub(crate) hold: Hold,
     pub(crate) estimator: Estimator,
-    /// Between what each unknown is.
+    /// The bounds of each unknown.
     pub(crate) bounds: [Vec<f64>; 2],
-    /// Between what each recovered state is.
+    /// The bounds of each recovered state.
     pub(crate) within: [Vec<f64>; 2],
-    /// When the extension starts again from the estimate, if it does.
+    /// The trigger of re-basing, if there is one.
     pub(crate) rebase: Option<Rebase>,
     /// The extension at the start.
     pub(crate) chi_0: Vec<f64>,
     /// The limit of the gate that refuses outliers.
     pub(crate) gate: Option<f64>,
-    /// What samples may be.
+    /// The ranges of samples.
     pub(crate) limits: Option<Limits>,
-    /// What the settings were derived from, if the author did not choose them.
-    pub(crate) known: Option<Known>,
-    /// How the errors of the estimates are predicted, where the numbers are known.
+    /// The known numbers that the settings were derived from, if the author did not choose them.
+    pub(crate) known: Option<KnownNumbers>,
+    /// The prediction of the estimates' errors, where the numbers are known.
     pub(crate) prediction: Option<Prediction>,
 }
 
-/// What the regression goes through.
+/// The operator of the regression.
 #[derive(Clone, Debug)]
 pub(crate) enum Operator {
     /// A filter of this bandwidth, in rad/s.
     Filter(f64),
-    /// The mean over so many samples.
+    /// The mean over this number of samples.
     Window(usize),
-    /// Each sample by itself, weighed by the standard deviation of each row.
+    /// Each sample by itself, weighted by the standard deviation of each row.
     Sampled(Vec<f64>),
 }
 
 /// An estimator of the runtime library.
 pub(crate) type Estimator = settings::Estimator<f64>;
 
-/// When the extension starts again from the estimate, as the runtime has it.
+/// The trigger of re-basing in the runtime's types.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Rebase {
-    /// After so many samples.
+    /// After this number of samples.
     Samples(u32),
-    /// In another form.
+    /// In a form without drift.
     Drift(Drift<f64>),
 }
 
 impl Rebase {
-    /// That of a section whose numbers the model's own check has seen to.
+    /// The trigger of a section, whose numbers the model's own check has admitted.
     fn of(written: settings::Rebase<f64>) -> Option<Self> {
         Some(match written {
             settings::Rebase::Samples(wanted) => Self::Samples(whole(wanted)?),
@@ -76,10 +76,10 @@ impl Rebase {
     }
 }
 
-/// What samples may be.
+/// The ranges of samples.
 pub(crate) type Limits = settings::Limits<f64>;
 
-/// What least squares need.
+/// The settings of least squares.
 pub(crate) type Covariance = settings::Covariance<f64>;
 
 /// The regressor extension of DREM.
@@ -89,30 +89,30 @@ pub(crate) type Extension = settings::Extension<f64>;
 pub(crate) type FiniteTime = settings::FiniteTime<f64>;
 
 impl Settings {
-    /// The settings of a model with this regression; what is missing in the section is reported.
+    /// The settings of a model with this regression; missing keys are reported.
     pub(crate) fn resolve(
-        asked: &Asked,
+        request: &Request,
         derivation: &Derivation,
         (regression, inverse): (&Regression, &LeftInverse),
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let (unknowns, states) = (regression.eta.len(), inverse.x.len());
-        let written = &asked.model.observer;
+        let written = &request.model.observer;
         if !written.has_gains() {
-            return Self::of_known(asked, (derivation, states), period, problems);
+            return Self::of_known(request, (derivation, states), period, problems);
         }
-        let mut section = Section { asked, written, problems };
+        let mut section = Section { request, written, problems };
         section.operator();
         section.estimator(unknowns);
-        let sizes = (unknowns, asked.plant.phi.len(), states);
+        let sizes = (unknowns, request.plant.phi.len(), states);
         let read = |number: &Decimal| Some(number.to_f64());
         let resolved = settings::Settings::resolve(written, sizes, read, section.problems)?;
         let mixes = matches!(resolved.estimator, Estimator::Drem { .. });
         if mixes && unknowns > MOST_MIXED {
             return None;
         }
-        let begun = if written.extension.is_empty() { start(asked.model, asked.plant, derivation) } else { None };
+        let begun = if written.extension.is_empty() { start(request.model, request.plant, derivation) } else { None };
         let begun = begun.map(|z| z.iter().map(Rational::to_f64).collect());
         Some(Self {
             operator: match resolved.operator {
@@ -132,30 +132,30 @@ impl Settings {
             within: bounds(resolved.within, states),
             chi_0: begun.unwrap_or(resolved.chi_0),
             gate: None,
-            limits: Limits::of(asked.model, read),
+            limits: Limits::of(request.model, read),
             known: None,
             prediction: None,
         })
     }
 
-    /// The settings that known numbers come to: those of the emitted code.
+    /// The settings derived from known numbers: those of the emitted code.
     fn of_known(
-        asked: &Asked,
+        request: &Request,
         (derivation, states): (&Derivation, usize),
         period: Option<f64>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let before = problems.has_errors();
-        let Some(tuned) = Tuned::of(asked.model, asked.plant, derivation, period, problems) else {
+        let Some(derived) = DerivedSettings::of(request.model, request.plant, derivation, period, problems) else {
             if before || !problems.has_errors() {
-                let message = format!("{} needs the observer's numbers", asked.who);
-                problems.push(Diagnostic::error(Code::SimulationIncomplete, asked.section, message).help(
+                let message = format!("{} needs the observer's numbers", request.who);
+                problems.push(Diagnostic::error(Code::SimulationIncomplete, request.section, message).help(
                     "add `observer: {sensors: .., start: .., disturbance: ..}` with standard deviations:                      docs/estimators.md has examples",
                 ));
             }
             return None;
         };
-        let settings = tuned.settings;
+        let settings = derived.settings;
         let all = |values: &[Rational]| values.iter().map(Rational::to_f64).collect::<Vec<f64>>();
         let estimator = match &settings.estimator {
             settings::Estimator::LeastSquares(settings::Covariance { start, forgetting, process_noise }) => {
@@ -165,7 +165,7 @@ impl Settings {
                     process_noise: process_noise.as_deref().map(all),
                 })
             }
-            // Known numbers come to least squares.
+            // Known numbers lead to least squares.
             _ => return None,
         };
         let chi_0 = all(&settings.chi_0);
@@ -187,9 +187,9 @@ impl Settings {
             estimator,
             chi_0,
             gate: settings.gate.as_ref().map(Rational::to_f64),
-            limits: Limits::of(asked.model, |number| Some(number.to_f64())),
-            known: tuned.known,
-            prediction: Some(tuned.prediction),
+            limits: Limits::of(request.model, |number| Some(number.to_f64())),
+            known: derived.known,
+            prediction: Some(derived.prediction),
         })
     }
 }
@@ -200,31 +200,31 @@ fn bounds([lower, upper]: [Option<Vec<f64>>; 2], count: usize) -> [Vec<f64>; 2] 
     [or(lower, f64::NEG_INFINITY), or(upper, f64::INFINITY)]
 }
 
-/// As many samples, if there is room for them: a whole number above zero, which the model's own check has seen to.
+/// This number of samples, if there is room: the model's own check has admitted a whole number above zero only.
 fn samples(wanted: f64) -> Option<usize> {
     let found = (1..=LONGEST).zip(1_u64..).find(|(_, number)| crate::timing::real(*number) >= wanted);
     found.map(|(samples, _)| samples)
 }
 
-/// A whole number above zero that `u32` holds, which the model's own check has seen to.
+/// A whole number above zero in `u32`, which the model's own check has admitted.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range is tested before")]
 fn whole(wanted: f64) -> Option<u32> {
     (wanted >= 1.0 && wanted <= f64::from(u32::MAX)).then_some(wanted as u32)
 }
 
 struct Section<'a> {
-    asked: &'a Asked<'a>,
+    request: &'a Request<'a>,
     written: &'a Observer,
     problems: &'a mut Diagnostics,
 }
 
 impl Section<'_> {
     fn lacks(&mut self, what: &str, help: String) {
-        let message = format!("{} needs {what}", self.asked.who);
-        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.asked.section, message).help(help));
+        let message = format!("{} needs {what}", self.request.who);
+        self.problems.push(Diagnostic::error(Code::SimulationIncomplete, self.request.section, message).help(help));
     }
 
-    /// Reports that there is neither filter nor window, or no room for the window.
+    /// Reports that filter and window are both missing, or that the window is too long.
     fn operator(&mut self) {
         let Some(window) = &self.written.window else {
             if self.written.filter.is_none() {
@@ -241,7 +241,7 @@ impl Section<'_> {
         }
     }
 
-    /// Reports what the estimator needs and the section lacks, and more unknowns than there is room for.
+    /// Reports settings of the estimator that the section lacks, and too many unknowns.
     fn estimator(&mut self, unknowns: usize) {
         use model::Estimator as Name;
         let name = self.written.estimator();
@@ -257,7 +257,7 @@ impl Section<'_> {
         let mixes = !matches!(name, Name::Gradient | Name::NormalisedGradient | Name::LeastSquares);
         if mixes && unknowns > MOST_MIXED {
             let message = format!("DREM of {unknowns} unknowns is too large to be simulated");
-            let place = self.written.estimator.as_ref().map_or(self.asked.section, |estimator| estimator.span);
+            let place = self.written.estimator.as_ref().map_or(self.request.section, |estimator| estimator.span);
             self.problems.push(Diagnostic::error(Code::SimulationUnsupported, place, message).help(format!(
                 "the simulator has room for {MOST_MIXED}: simulate the emitted code, or choose `least-squares`"
             )));

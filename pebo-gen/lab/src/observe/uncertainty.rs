@@ -1,38 +1,38 @@
-//! By how much the estimates of an observer err where measured outputs drive its cascade.
+//! The covariance of an observer's errors where measured outputs drive its cascade.
 //!
 //! ```text
 //! e' = F e + G n + G n'        the extension goes on from the sample with the noise n to that with n'
 //! e+ = (1 - K H) e' + K E n'   least squares take the sample
 //! ```
 //!
-//! In: each step of the observer, with what it is told of its sensors. Out: the covariance of `(e, n)`, the error of z and the
+//! In: each step of the observer, and the noise model. Out: the covariance of `(e, n)`, the error of z and the
 //! noise of the last sample, and from it standard errors of the estimates and what an innovation should be.
 //!
-//! The runtime's least squares take the noise of a sample and that of the cascade for independent, and weigh both by their
-//! variances. It is the same noise. Their own covariance is that of another plant, often twice as large as what is seen; the
-//! gain `K = P H^T R^-1` that they make of it is the one that the observer has, and what comes of that is worked out here:
-//! the covariance of a filter whose gain is given (Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7),
-//! with the noise of the last sample as a state beside the error.
+//! The runtime's least squares take the noise of a sample and that of the cascade for independent, and weight both by
+//! their variances. It is the same noise. Their own covariance is that of another plant, often twice as large as the
+//! true one. Here the gain `K = P H^T R^-1` that they make of it is taken as given, and the covariance of a filter with
+//! this gain is computed (Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7), with the noise of
+//! the last sample as a state beside the error.
 
 use pebo_runtime::nalgebra::{Cholesky, SMatrix, SVector};
 use pebo_runtime::{Extension, Fault, Flow, Fundamental, Model};
 
 use super::sizes::{pad, padded};
 
-/// What is told of the noise that an observer has to do with, each with a value for every output or coordinate.
+/// The noise that an observer meets, with a value for every output or coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct NoiseModel {
     /// The standard deviations of the outputs' samples.
     pub(crate) sensors: Vec<f64>,
-    /// Those of the rows of the regression, by which they are weighed.
+    /// Those of the rows of the regression, their weights.
     pub(crate) weights: Vec<f64>,
     /// The variances of the unknown at the start.
     pub(crate) start: Vec<f64>,
-    /// How much it drifts, as a variance per second: without what the sensors add.
+    /// Its drift, as a variance per second, without the contribution of the sensors.
     pub(crate) drift: Vec<f64>,
     /// The first coordinates that are rows of the regression: all of these in the output form, else none.
     pub(crate) rows: usize,
-    /// The place of the output that each row is, where outputs may be missing.
+    /// The index of each row's output, where outputs may be missing.
     pub(crate) measured: Vec<usize>,
 }
 
@@ -46,19 +46,19 @@ pub(crate) struct Uncertainty<const N: usize> {
     rows: usize,
     measured: Vec<usize>,
     /// None before the first sample.
-    joint: Option<Joint<N>>,
+    joint: Option<JointCovariance<N>>,
 }
 
-/// Of the error of z, and of the noise of the last sample.
+/// The covariance of the error of z and of the noise of the last sample.
 #[derive(Clone, Copy, Debug)]
-struct Joint<const N: usize> {
+struct JointCovariance<const N: usize> {
     errors: SMatrix<f64, N, N>,
     /// The expectation of error times noise.
     both: SMatrix<f64, N, N>,
     noise: SMatrix<f64, N, N>,
 }
 
-/// The ends of a step, and what is estimated at its start.
+/// The ends of a step, and the estimate at its start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval<'a, const N: usize> {
     pub(crate) before: &'a SVector<f64, N>,
@@ -69,9 +69,10 @@ pub(crate) struct Interval<'a, const N: usize> {
     pub(crate) z: SVector<f64, N>,
 }
 
-/// What an interval makes of errors, before its sample is taken: `F`, `G` and `E`, and the map `H` of the rows.
+/// The propagation of errors over an interval, before its sample is taken: `F`, `G` and `E`, and the map `H` of the
+/// rows.
 #[derive(Clone, Copy, Debug)]
-struct Propagated<const N: usize> {
+struct Propagation<const N: usize> {
     of_errors: SMatrix<f64, N, N>,
     of_noise: SMatrix<f64, N, N>,
     of_sample: SMatrix<f64, N, N>,
@@ -79,24 +80,24 @@ struct Propagated<const N: usize> {
 }
 
 impl<const N: usize> Uncertainty<N> {
-    pub(crate) fn new(told: &Told) -> Self {
+    pub(crate) fn new(noise: &NoiseModel) -> Self {
         Self {
-            sensors: pad(&told.sensors),
-            weights: padded(&told.weights, 1.0),
-            start: pad(&told.start),
-            drift: pad(&told.drift),
-            rows: told.rows,
-            measured: told.measured.clone(),
+            sensors: pad(&noise.sensors),
+            weights: padded(&noise.weights, 1.0),
+            start: pad(&noise.start),
+            drift: pad(&noise.drift),
+            rows: noise.rows,
+            measured: noise.measured.clone(),
             joint: None,
         }
     }
 
-    /// Before the first sample again.
+    /// Starts again before the first sample.
     pub(crate) fn reset(&mut self) {
         self.joint = None;
     }
 
-    /// Takes the first sample: in the output form it is what is known of the outputs, and errs by its noise.
+    /// Takes the first sample: in the output form it is the estimate of the outputs, and its noise is their error.
     pub(crate) fn begin<M>(&mut self, model: &M, y: &SVector<f64, N>, u: &SVector<f64, N>)
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
@@ -106,14 +107,14 @@ impl<const N: usize> Uncertainty<N> {
         if self.rows > 0 {
             let of_sample = self.of_sample(model, y, u, &SVector::zeros());
             both = of_sample * noise;
-            let (seen, size) = (both * of_sample.transpose(), (self.rows, self.rows));
-            errors.view_mut((0, 0), size).copy_from(&seen.view((0, 0), size));
+            let (known, size) = (both * of_sample.transpose(), (self.rows, self.rows));
+            errors.view_mut((0, 0), size).copy_from(&known.view((0, 0), size));
         }
-        self.joint = Some(Joint { errors, both, noise });
+        self.joint = Some(JointCovariance { errors, both, noise });
     }
 
-    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z. A missing output has
-    /// been replaced by what the observer expects of it.
+    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z. A missing output
+    /// has been replaced by what the observer expects of it.
     ///
     /// # Errors
     /// [`Fault::Singular`] where the flow has no exponential, as of the step itself.
@@ -127,22 +128,22 @@ impl<const N: usize> Uncertainty<N> {
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
-        let Some(Joint { errors, both, noise }) = self.joint else { return Ok(()) };
-        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
+        let Some(JointCovariance { errors, both, noise }) = self.joint else { return Ok(()) };
+        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
         let one = SMatrix::<f64, N, N>::identity();
         let (mut present, mut expected) = (one, SMatrix::<f64, N, N>::zeros());
         let mut weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
         for (row, output) in self.measured.iter().enumerate().filter(|(_, output)| missing[**output]) {
-            // What stands in for a missing output errs as what is expected of it does.
+            // The substitute for a missing output has the error of its expectation.
             present[(*output, *output)] = 0.0;
             expected[(*output, row)] = 1.0;
             weights[row] = 0.0;
         }
         let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);
-        let told = (one - gain * rows) * (one + of_noise * expected);
-        // Of error, noise of the last sample, and noise of this one: what becomes of them in the error and in the noise.
+        let kept = (one - gain * rows) * (one + of_noise * expected);
+        // The maps of error, noise of the last sample, and noise of this one to the new error and the new noise.
         let fresh = of_noise * present;
-        let to_errors = [told * of_errors, told * of_noise, told * fresh + gain * of_sample * present];
+        let to_errors = [kept * of_errors, kept * of_noise, kept * fresh + gain * of_sample * present];
         let to_noise = [expected * of_errors, expected * of_noise, expected * fresh + present];
         let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
@@ -152,9 +153,9 @@ impl<const N: usize> Uncertainty<N> {
                 + by_noise * (both.transpose() * right[0].transpose() + noise * right[1].transpose())
                 + by_sample * sensors * right[2].transpose()
         };
-        self.joint = Some(Joint {
-            errors: between(&to_errors, &to_errors) + told * drift * told.transpose(),
-            both: between(&to_errors, &to_noise) + told * drift * expected.transpose(),
+        self.joint = Some(JointCovariance {
+            errors: between(&to_errors, &to_errors) + kept * drift * kept.transpose(),
+            both: between(&to_errors, &to_noise) + kept * drift * expected.transpose(),
             noise: between(&to_noise, &to_noise) + expected * drift * expected.transpose(),
         });
         Ok(())
@@ -171,8 +172,8 @@ impl<const N: usize> Uncertainty<N> {
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
-        let Joint { errors, both, noise } = self.joint?;
-        let Propagated { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
+        let JointCovariance { errors, both, noise } = self.joint?;
+        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
         let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
         let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
@@ -188,9 +189,9 @@ impl<const N: usize> Uncertainty<N> {
         square.is_finite().then_some(square)
     }
 
-    /// The standard errors of what is made of z and a sample: by what it changes with each column of a root of their
-    /// covariance, to the side where that is less, as an angle may come round on the other. The last sample is `age` seconds
-    /// old, in which z has drifted.
+    /// The standard errors of functions of z and a sample: by their change with each column of a root of the
+    /// covariance, to the side where that is less, as an angle may come round on the other. The last sample is `age`
+    /// seconds old, in which z has drifted.
     pub(crate) fn of(
         &self,
         (z, y): (&SVector<f64, N>, &SVector<f64, N>),
@@ -210,9 +211,9 @@ impl<const N: usize> Uncertainty<N> {
         squares.iter().all(|square| square.is_finite()).then(|| squares.map(f64::sqrt))
     }
 
-    /// The columns of a root of the covariance: by how much z and the outputs err together.
+    /// The columns of a root of the covariance of z and the outputs.
     fn columns(&self, age: f64) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
-        let Joint { errors, both, noise } = self.joint.as_ref()?;
+        let JointCovariance { errors, both, noise } = self.joint.as_ref()?;
         let errors = errors + SMatrix::from_diagonal(&(self.drift * age));
         let at = |i: usize, j: usize| match (i.checked_sub(N), j.checked_sub(N)) {
             (None, None) => errors[(i, j)],
@@ -222,7 +223,7 @@ impl<const N: usize> Uncertainty<N> {
         };
         let mut left: Vec<Vec<f64>> = (0..2 * N).map(|i| (0..2 * N).map(|j| at(i, j)).collect()).collect();
         let mut columns: Vec<(SVector<f64, N>, SVector<f64, N>)> = Vec::new();
-        // By pivots, largest share first: what is left of a matrix that is singular is rounding.
+        // By pivots, largest share first: the rest of a singular matrix is rounding.
         let whole: Vec<f64> = (0..2 * N).map(|i| left[i][i]).collect();
         let mut open: Vec<usize> = (0..2 * N).filter(|i| whole[*i] > 0.0).collect();
         while let Some(place) =
@@ -242,7 +243,7 @@ impl<const N: usize> Uncertainty<N> {
         columns.iter().all(|(e, n)| e.iter().chain(n.iter()).all(|value| value.is_finite())).then_some(columns)
     }
 
-    fn propagated<M>(&self, model: &M, interval: &Interval<'_, N>) -> Result<Propagated<N>, Fault>
+    fn propagated<M>(&self, model: &M, interval: &Interval<'_, N>) -> Result<Propagation<N>, Fault>
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
@@ -258,13 +259,13 @@ impl<const N: usize> Uncertainty<N> {
             lambda * z + h
         };
         let one = SMatrix::<f64, N, N>::identity();
-        // The mean of both ends drives the flow over the interval; what it does in it, by the trapezoidal rule.
+        // The mean of both ends drives the flow over the interval, by the trapezoidal rule.
         let of_noise = (one + of_errors) * self.slopes(after, rate) * (0.25 * dt);
         let rows = model.regression(&M::Extension::new(SVector::zeros()), after, u).factor;
-        Ok(Propagated { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
+        Ok(Propagation { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
     }
 
-    /// How the rows of a sample change with its outputs: what they show, less what is expected at z.
+    /// The derivative of a sample's rows by its outputs: the known side, less its expectation at z.
     fn of_sample<M>(
         &self,
         model: &M,
@@ -296,5 +297,5 @@ impl<const N: usize> Uncertainty<N> {
     }
 }
 
-/// The part of a variance that is rounding where others determine it.
+/// The share of a variance that is rounding where others determine it.
 const ROUNDING: f64 = 1e-12;

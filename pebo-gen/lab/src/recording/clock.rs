@@ -1,8 +1,8 @@
-//! When each row was recorded.
+//! The clock of a recording: the time of each row.
 
 use crate::timing::real;
 
-/// Intervals that tell what a usual one is: an odd number, of which the middle one is taken.
+/// The number of intervals whose median is the usual one; odd.
 const USUAL: usize = 15;
 
 /// A gap is longer than so many usual intervals: half-way between one, and the two that a missing row leaves.
@@ -15,32 +15,32 @@ pub(super) enum Instant {
     First(f64),
     /// A later row, after so many seconds, which are a gap or not.
     Later { t: f64, dt: f64, gap: bool },
-    /// It is not later than the row before.
+    /// The time is not later than that of the row before.
     Backwards,
-    /// It has no time.
+    /// The row has no time.
     Timeless,
 }
 
-/// Where in time a log is.
+/// The present time of a log.
 #[derive(Debug)]
 pub(super) enum Clock {
-    /// Rows that are equally far apart: by this fraction of seconds, so that instants are rounded once.
+    /// Rows with this period in seconds, a fraction, so that instants are rounded once.
     Steady { row: u64, fraction: (f64, f64) },
-    /// Rows that say when they were recorded.
-    Told { last: Option<f64>, recent: [f64; USUAL], known: usize, next: usize },
+    /// Rows with recorded times.
+    Recorded { last: Option<f64>, recent: [f64; USUAL], known: usize, next: usize },
 }
 
 impl Clock {
-    /// The clock of rows with this period, or of rows that say their time.
+    /// The clock of rows with this period, or with recorded times.
     pub(super) fn new(period: Option<(f64, f64)>) -> Self {
         match period {
             Some(fraction) => Self::Steady { row: 0, fraction },
-            None => Self::Told { last: None, recent: [0.0; USUAL], known: 0, next: 0 },
+            None => Self::Recorded { last: None, recent: [0.0; USUAL], known: 0, next: 0 },
         }
     }
 
-    /// The time of the next row, which may say it.
-    pub(super) fn row(&mut self, told: f64) -> Instant {
+    /// The time of the next row, which may be recorded.
+    pub(super) fn row(&mut self, measured_time: f64) -> Instant {
         match self {
             Self::Steady { row, fraction: (numerator, denominator) } => {
                 let t = real(*row) * *numerator / *denominator;
@@ -48,24 +48,24 @@ impl Clock {
                 let dt = *numerator / *denominator;
                 if *row == 1 { Instant::First(t) } else { Instant::Later { t, dt, gap: false } }
             }
-            Self::Told { .. } if !told.is_finite() => Instant::Timeless,
-            Self::Told { last, recent, known, next } => {
-                let Some(before) = last.filter(|before| told > *before) else {
+            Self::Recorded { .. } if !measured_time.is_finite() => Instant::Timeless,
+            Self::Recorded { last, recent, known, next } => {
+                let Some(before) = last.filter(|before| measured_time > *before) else {
                     return if last.is_some() {
                         Instant::Backwards
                     } else {
-                        *last = Some(told);
-                        Instant::First(told)
+                        *last = Some(measured_time);
+                        Instant::First(measured_time)
                     };
                 };
-                let dt = told - before;
-                *last = Some(told);
-                // Two intervals do not tell which of them is the usual one.
+                let dt = measured_time - before;
+                *last = Some(measured_time);
+                // Two intervals do not determine the usual one.
                 let gap = *known > 2 && dt > GAP * middle(&recent[..*known]);
                 recent[*next] = dt;
                 *next = (*next + 1) % USUAL;
                 *known = (*known + 1).min(USUAL);
-                Instant::Later { t: told, dt, gap }
+                Instant::Later { t: measured_time, dt, gap }
             }
         }
     }

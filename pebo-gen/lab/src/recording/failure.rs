@@ -1,4 +1,4 @@
-//! Why a replay ended before the recording did.
+//! The reasons why a replay stops early.
 
 use pebo_runtime::Fault;
 
@@ -19,11 +19,11 @@ pub enum Failure {
     Refused(Fault),
     /// The observer accepted no sample.
     Silent {
-        /// The rows that there are.
+        /// The number of rows.
         rows: u64,
-        /// What was wrong with them.
+        /// The faults of the rows.
         faults: Vec<FaultCount>,
-        /// Why the observer refused them.
+        /// The reasons for which the observer refused them.
         refused: Vec<String>,
     },
     /// The caller ended the run.

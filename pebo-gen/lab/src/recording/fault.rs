@@ -1,4 +1,4 @@
-//! What was wrong with rows, counted by kind: facts about the data, not ends of a run.
+//! Faults of rows, counted by kind: facts about the data that do not end a run.
 
 use std::fmt;
 
@@ -8,8 +8,8 @@ use super::log::Blank;
 
 /// A kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
-    /// A cell of this column has nothing in it.
+pub(super) enum RowFault {
+    /// A cell of this column is empty.
     Empty(usize),
     /// A cell of this column is NaN or infinite.
     NotFinite(usize),
@@ -25,8 +25,8 @@ pub(super) enum Kind {
     Input(usize),
 }
 
-impl Kind {
-    /// That of a cell of this column.
+impl RowFault {
+    /// The fault of a cell of this column.
     pub(super) fn of_cell(column: usize, blank: Blank) -> Self {
         match blank {
             Blank::Empty => Self::Empty(column),
@@ -35,15 +35,15 @@ impl Kind {
     }
 }
 
-/// How often each kind occurred, and the line of the first.
+/// The number of faults of each kind, and the line of the first.
 #[derive(Debug, Default)]
-pub(super) struct Faults {
-    counts: Vec<(Kind, u64, u64)>,
+pub(super) struct RowFaults {
+    counts: Vec<(RowFault, u64, u64)>,
 }
 
-impl Faults {
+impl RowFaults {
     /// Counts one.
-    pub(super) fn count(&mut self, kind: Kind, line: u64) {
+    pub(super) fn count(&mut self, kind: RowFault, line: u64) {
         match self.counts.iter_mut().find(|(known, ..)| *known == kind) {
             Some((_, count, _)) => *count += 1,
             None => self.counts.push((kind, 1, line)),
@@ -52,14 +52,14 @@ impl Faults {
 
     /// In words, in the order of their first lines; `columns` and `inputs` are the names that kinds number.
     pub(super) fn worded(&self, [columns, inputs]: [&[String]; 2]) -> Vec<FaultCount> {
-        let word = |kind: Kind| match kind {
-            Kind::Empty(column) => format!("empty cells of `{}`", columns[column]),
-            Kind::NotFinite(column) => format!("cells of `{}` that are NaN or infinite", columns[column]),
-            Kind::Timeless => "rows skipped that have no time".to_owned(),
-            Kind::Backwards => "rows skipped whose time is not later than that of the row before".to_owned(),
-            Kind::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
-            Kind::Cut => "last row dropped, as it breaks off with the file".to_owned(),
-            Kind::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),
+        let word = |kind: RowFault| match kind {
+            RowFault::Empty(column) => format!("empty cells of `{}`", columns[column]),
+            RowFault::NotFinite(column) => format!("cells of `{}` that are NaN or infinite", columns[column]),
+            RowFault::Timeless => "rows skipped that have no time".to_owned(),
+            RowFault::Backwards => "rows skipped whose time is not later than that of the row before".to_owned(),
+            RowFault::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
+            RowFault::Cut => "last row dropped, as it breaks off with the file".to_owned(),
+            RowFault::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),
         };
         let mut counts = self.counts.clone();
         counts.sort_by_key(|(.., line)| *line);
@@ -73,12 +73,12 @@ impl fmt::Display for FaultCount {
     }
 }
 
-/// A kind of fault, and how often it occurred.
+/// A kind of fault with its count.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FaultCount {
-    /// What was wrong, in words.
+    /// The fault in words.
     pub what: String,
-    /// How often.
+    /// The number of such faults.
     pub count: u64,
     /// The line of the first.
     pub line: u64,

@@ -1,7 +1,7 @@
 //! Recorded data as CSV, row by row.
 //!
-//! In: bytes. Out: the names of the columns, then the numbers of those columns that are wanted, one row at a time; a
-//! cell that is empty or not finite is a fact, one that is no number is a [`Malformed`]. No more than a row is held.
+//! In: bytes. Out: the names of the columns, then the numbers of the wanted columns, one row at a time; an empty cell
+//! or one that is not finite is a fact, other text is a [`Malformed`]. No more than a row is held.
 
 use std::fmt;
 use std::io::{BufRead as _, BufReader, Read};
@@ -10,19 +10,19 @@ use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use pebo_design::source::quoted;
 
-/// What parts the columns: that of these which the header has most of.
+/// The delimiters of columns: the most frequent one in the header is taken.
 const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
 
-/// Bytes that are asked for at once.
+/// Bytes of one read.
 const BUFFER: usize = 1 << 16;
 
 /// The most bytes of a row: a file of another kind may have no lines.
 pub(super) const LONGEST: usize = 1 << 20;
 
-/// What some programs write before UTF-8 text.
+/// The byte-order mark that some programs write before UTF-8 text.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// A recording of which the header is read.
+/// A recording whose header has been read.
 pub struct Log<'a> {
     name: String,
     columns: Vec<String>,
@@ -42,7 +42,7 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// Reads a line; whether there is one.
+    /// Reads a line; false at the end.
     fn advance(&mut self) -> Result<bool, Unreadable> {
         loop {
             self.line.clear();
@@ -69,7 +69,7 @@ impl Lines<'_> {
         }
     }
 
-    /// Whether the line has its end; the last of a file may have none.
+    /// True if the line has its end; the last of a file may have none.
     fn is_whole(&self) -> bool {
         self.line.ends_with(b"\n")
     }
@@ -89,7 +89,7 @@ impl Row {
         Self { reader, text: Vec::new(), ends: Vec::new(), count: 0 }
     }
 
-    /// Takes the cells of a line; whether all its quotes are closed.
+    /// Splits a line into cells; true if all its quotes are closed.
     fn split(&mut self, line: &[u8]) -> bool {
         // No cell is longer than the line, nor are there more cells than letters.
         if self.text.len() <= line.len() {
@@ -122,47 +122,47 @@ impl Row {
 /// A cell that holds no finite number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Blank {
-    /// There is nothing in it.
+    /// An empty cell.
     Empty,
-    /// It is NaN or infinite.
+    /// NaN or infinity.
     NotFinite,
 }
 
-/// What comes next in a log.
+/// The next item of a log.
 pub(super) enum Next {
     /// A row, which begins in this line.
     Row(u64),
     /// A row that breaks off with the file.
     Cut(u64),
-    /// Nothing more.
+    /// The end.
     End,
 }
 
-/// Why a log cannot be read, or not further.
+/// The reason why a log cannot be read, or not further.
 #[derive(Debug)]
 pub enum Unreadable {
     /// The operating system refused.
     Refused(std::io::Error),
     /// There is no line that names the columns.
     Nameless,
-    /// A row has something else than numbers, or not as many as there are columns.
+    /// A row has cells that are no numbers, or a wrong number of cells.
     Malformed(Malformed),
 }
 
-/// A cell that should be another.
+/// A malformed row or cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Malformed {
     /// The line, from 1.
     pub line: u64,
-    /// The column, from 1; none where it is about the whole row.
+    /// The column, from 1; none for the whole row.
     pub column: Option<usize>,
-    /// What is wrong.
+    /// The mistake.
     pub what: String,
     help: &'static str,
 }
 
 impl<'a> Log<'a> {
-    /// Reads the header of a recording; `name` is what messages call it.
+    /// Reads the header of a recording; `name` is its name in messages.
     pub fn open(name: impl Into<String>, bytes: impl Read + 'a) -> Result<Self, Unreadable> {
         let bytes: Box<dyn Read + 'a> = Box::new(bytes);
         let bytes = BufReader::with_capacity(BUFFER, bytes);
@@ -180,7 +180,7 @@ impl<'a> Log<'a> {
         Ok(Self { name: name.into(), columns, lines, row })
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -195,7 +195,7 @@ impl<'a> Log<'a> {
         self.lines.read
     }
 
-    /// Reads a row: the numbers of the `wanted` columns, NaN where there is none; `blank` is told of each of these.
+    /// Reads a row: the numbers of the `wanted` columns, NaN for blank cells, each of which is passed to `blank`.
     pub(super) fn next(
         &mut self,
         wanted: &[usize],
@@ -279,7 +279,7 @@ fn number(cell: &[u8]) -> Option<f64> {
     std::str::from_utf8(cell).ok()?.parse().ok()
 }
 
-/// The name by which formulas call a column: what cannot be in a name is an underscore, of which there is none at the end.
+/// The name of a column in formulas: other characters become underscores, which are removed at the end.
 fn spelled(place: usize, name: &[u8]) -> String {
     let mut spelled = String::new();
     for letter in String::from_utf8_lossy(name).chars() {
@@ -299,7 +299,7 @@ fn spelled(place: usize, name: &[u8]) -> String {
 }
 
 impl Malformed {
-    /// What to do about it.
+    /// The help for the user.
     pub fn help(&self) -> &'static str {
         self.help
     }

@@ -1,12 +1,12 @@
-//! The observer over recorded data.
+//! Runs the observer over recorded data.
 //!
 //! ```text
 //! Model, Plant, Derivation, Log -> Replay -> run -> Replayed, CSV, figure
 //! ```
 //!
-//! In: an accepted derivation, the model's sections `observer` and `recording`, and a table of samples of any length. Out:
-//! the estimates of x row by row, how far they are from states that were measured besides, what of the outputs the model
-//! does not explain, and what was wrong with rows. What runs is what [`simulate`](super) runs, without the plant.
+//! In: an accepted derivation, the model's sections `observer` and `recording`, and a table of samples of any length.
+//! Out: the estimates of x row by row, their errors where states were measured besides, the residuals of the outputs,
+//! and the faults of rows. The observer is that of the [closed loop](super), without the plant.
 //!
 //! Holds: memory does not grow with the recording; the same rows give the same estimates, to the last bit.
 

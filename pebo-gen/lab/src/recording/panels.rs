@@ -1,9 +1,9 @@
-//! The parts of the figure of a replay: a panel for each estimate, beside the state where that was measured; errors;
+//! The panels of a replay's figure: a panel for each estimate, beside the state where that was measured; errors;
 //! residuals where no state was; outputs; inputs. On a linear axis all signals have one unit.
 
-use crate::closed_loop::panel::Panel;
-use crate::figure::curve::Growing;
+use crate::figure::curve::GrowingCurve;
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use pebo_cas::Symbol;
 use pebo_design::model::Scale;
 use pebo_design::plant::Plant;
@@ -11,22 +11,22 @@ use pebo_design::plant::Plant;
 use super::layout::Layout;
 use super::residual::Residuals;
 
-/// Where a curve has its values.
+/// The source of a curve's values.
 #[derive(Clone, Copy, Debug)]
-enum From {
+enum CurveSource {
     /// At this position of the table.
     Table(usize),
-    /// Of the error of this number.
+    /// The error with this index.
     Error(usize),
-    /// Of the residual of this number.
+    /// The residual with this index.
     Residual(usize),
 }
 
-/// The panels, and where their curves have their values.
+/// The panels, and the sources of their curves.
 #[derive(Debug, Default)]
 pub(super) struct Panels {
     panels: Vec<Panel>,
-    sources: Vec<From>,
+    sources: Vec<CurveSource>,
 }
 
 impl Panels {
@@ -39,26 +39,26 @@ impl Panels {
                 Some(_) => "Estimate".to_owned(),
                 None => format!("Estimate of {}", name(*state)),
             };
-            let mut curves = vec![(*state, Label::estimate(&name(*state)), From::Table(place))];
+            let mut curves = vec![(*state, Label::estimate(&name(*state)), CurveSource::Table(place))];
             if let Some(measured) = layout.of_state(*state) {
-                curves.push((*state, Label::name(&name(*state)).remark("measured"), From::Table(measured)));
+                curves.push((*state, Label::name(&name(*state)).remark("measured"), CurveSource::Table(measured)));
             }
             panels.add(plant, &title, Scale::Linear, curves);
         }
         let numbered = errors.iter().enumerate();
-        let curves = numbered.map(|(place, state)| (*state, Label::error(&name(*state)), From::Error(place)));
+        let curves = numbered.map(|(place, state)| (*state, Label::error(&name(*state)), CurveSource::Error(place)));
         panels.add(plant, "Estimation errors", Scale::Log, curves.collect());
         if errors.is_empty() {
             let numbered = residuals.outputs.iter().enumerate();
             let curves = numbered.map(|(place, (output, _))| {
                 let output = plant.y[*output].symbol;
-                (output, Label::name(&name(output)), From::Residual(place))
+                (output, Label::name(&name(output)), CurveSource::Residual(place))
             });
             panels.add(plant, "Residuals of the outputs", Scale::Linear, curves.collect());
         }
         let signals = |symbols: Vec<Symbol>, places: std::ops::Range<usize>| {
             let both = symbols.into_iter().zip(places);
-            both.map(|(symbol, place)| (symbol, Label::name(&name(symbol)), From::Table(place))).collect()
+            both.map(|(symbol, place)| (symbol, Label::name(&name(symbol)), CurveSource::Table(place))).collect()
         };
         let outputs = plant.y.iter().map(|output| output.symbol).collect();
         panels.add(plant, "Outputs", Scale::Linear, signals(outputs, layout.y.clone()));
@@ -66,9 +66,9 @@ impl Panels {
         panels
     }
 
-    fn add(&mut self, plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label, From)>) {
+    fn add(&mut self, plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label, CurveSource)>) {
         for curves in Panel::groups(plant, scale, curves, |(symbol, ..)| *symbol) {
-            let (labels, sources): (Vec<_>, Vec<From>) =
+            let (labels, sources): (Vec<_>, Vec<CurveSource>) =
                 curves.into_iter().map(|(symbol, label, from)| ((symbol, label), from)).unzip();
             self.panels.push(Panel::of_signals(plant, title, scale, labels));
             self.sources.extend(sources);
@@ -81,15 +81,15 @@ impl Panels {
 
     /// The curves before the first row.
     pub(super) fn start(&self) -> Curves<'_> {
-        Curves { panels: self, curves: vec![Growing::default(); self.sources.len()] }
+        Curves { panels: self, curves: vec![GrowingCurve::default(); self.sources.len()] }
     }
 }
 
-/// The curves as far as they go.
+/// The curves so far.
 #[derive(Debug)]
 pub(super) struct Curves<'a> {
     panels: &'a Panels,
-    curves: Vec<Growing>,
+    curves: Vec<GrowingCurve>,
 }
 
 impl Curves<'_> {
@@ -97,9 +97,9 @@ impl Curves<'_> {
     pub(super) fn add(&mut self, t: f64, table: &[f64], errors: &[f64], residuals: &[f64]) {
         for (curve, source) in self.curves.iter_mut().zip(&self.panels.sources) {
             let value = match *source {
-                From::Table(place) => table[place],
-                From::Error(place) => errors[place],
-                From::Residual(place) => residuals[place],
+                CurveSource::Table(place) => table[place],
+                CurveSource::Error(place) => errors[place],
+                CurveSource::Residual(place) => residuals[place],
             };
             curve.add((t, value));
         }
@@ -107,7 +107,7 @@ impl Curves<'_> {
 
     /// The points of each panel's curves.
     pub(super) fn finish(self) -> Vec<Vec<Vec<(f64, f64)>>> {
-        let mut curves = self.curves.into_iter().map(Growing::finish);
+        let mut curves = self.curves.into_iter().map(GrowingCurve::finish);
         let panels = self.panels.panels.iter();
         panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect()
     }

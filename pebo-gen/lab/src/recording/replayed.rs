@@ -1,4 +1,4 @@
-//! What came of a replay.
+//! The result of a replay.
 
 use serde::Serialize;
 
@@ -7,33 +7,32 @@ use crate::summary::{Summary, short};
 
 use super::fault::FaultCount;
 
-/// What came of a replay.
+/// The result of a replay.
 #[derive(Clone, Debug, Serialize)]
 pub struct Replayed {
     /// The rows that were read.
     pub rows: u64,
-    /// When the first of them was recorded, in seconds.
+    /// The time of the first of them, in seconds.
     pub start: f64,
-    /// The errors of estimates whose states were measured, what the data were good for, and the samples that the observer
-    /// refused.
+    /// The errors of estimates whose states were measured, the excitation, and the samples that the observer refused.
     pub summary: Summary,
-    /// What the model with the estimates does not explain of the outputs.
+    /// The residuals of the outputs.
     pub residuals: Vec<OutputResidual>,
-    /// What was wrong with rows, by kind, in the order in which each occurred first.
+    /// The faults of rows, by kind, in the order of their first occurrence.
     pub faults: Vec<FaultCount>,
     /// The figure as SVG.
     #[serde(skip)]
     pub figure: String,
 }
 
-/// How far an output is from what the model says of it with the estimates.
+/// The residual of an output: its difference from the model with the estimates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutputResidual {
     /// The output.
     pub output: String,
     /// Its unit, if the model has one for it.
     pub unit: Option<String>,
-    /// How large the residual is in the last tenth of the recording.
+    /// The size of the residual in the last tenth of the recording.
     pub score: Score,
 }
 

@@ -1,12 +1,12 @@
-//! What the outputs do that the model with the estimates does not explain.
+//! The residuals of the outputs, beside the model with the estimates.
 //!
 //! ```text
 //! r' = y' - f_y(x_hat, y, u) - r/T        r = y - g_y(x_hat, y, u)
 //! ```
 //!
-//! On the left for an output that has a rate: the output less what its rate adds up to, over the last hundred samples or
-//! so. It needs no measured x, is in the unit of the output, and stays near the noise of the sensor if estimates and model
-//! are right: one sample would tell little beside that noise, and many would tell of estimates long ago.
+//! On the left for an output that has a rate: the output less the integral of its rate, over the last hundred samples
+//! or so. It needs no measured x, is in the unit of the output, and remains near the noise of the sensor if estimates
+//! and model are right. Fewer samples would be hidden by that noise, and more would include outdated estimates.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,17 +20,17 @@ use super::layout::Layout;
 /// T in samples.
 const MEMORY: f64 = 100.0;
 
-/// The outputs of which the model says how they move, with programs from the table.
+/// The outputs with residuals, with programs from the table.
 #[derive(Debug)]
 pub(super) struct Residuals {
-    /// Positions in y, and whether it is the rate that is given.
+    /// Positions in y; true if the rate is given.
     pub(super) outputs: Vec<(usize, bool)>,
     /// Their rates, or their values.
     formulas: Program,
 }
 
 impl Residuals {
-    /// Those that can be worked out from estimates, outputs and inputs alone.
+    /// The outputs whose formulas need estimates, outputs and inputs alone.
     pub(super) fn resolve(
         plant: &Plant,
         layout: &Layout,
@@ -57,17 +57,17 @@ impl Residuals {
         Some(Self { outputs, formulas })
     }
 
-    /// At work.
-    pub(super) fn start(&self) -> Course<'_> {
+    /// The residuals before the first sample.
+    pub(super) fn start(&self) -> ResidualState<'_> {
         let nothing = vec![0.0; self.outputs.len()];
         let interpreter = Interpreter::new(&self.formulas);
-        Course { residuals: self, interpreter, end: nothing.clone(), start: None, values: nothing }
+        ResidualState { residuals: self, interpreter, end: nothing.clone(), start: None, values: nothing }
     }
 }
 
-/// Residuals from sample to sample.
+/// The state of the residuals in a replay.
 #[derive(Debug)]
-pub(super) struct Course<'a> {
+pub(super) struct ResidualState<'a> {
     residuals: &'a Residuals,
     interpreter: Interpreter,
     /// The formulas at the end of an interval.
@@ -77,9 +77,9 @@ pub(super) struct Course<'a> {
     values: Vec<f64>,
 }
 
-impl Course<'_> {
-    /// Takes an accepted sample, at the end of an interval of `dt` seconds; `y` is part of the table, the inputs are those
-    /// of the interval. Of the first sample nothing is known.
+impl ResidualState<'_> {
+    /// Takes an accepted sample, at the end of an interval of `dt` seconds; `y` is part of the table, the inputs are
+    /// those of the interval. The first sample has no residual.
     pub(super) fn sample(&mut self, table: &[f64], y: &[f64], dt: f64) {
         let Some((rates, outputs)) = &self.start else { return };
         self.interpreter.run(table, &mut self.end);
@@ -94,7 +94,7 @@ impl Course<'_> {
         }
     }
 
-    /// Begins the interval behind an accepted sample, with its inputs in the table.
+    /// Begins the interval after an accepted sample, with its inputs in the table.
     pub(super) fn begin(&mut self, table: &[f64], y: &[f64]) {
         let (rates, outputs) = self.start.get_or_insert_with(|| (self.end.clone(), y.to_vec()));
         self.interpreter.run(table, rates);

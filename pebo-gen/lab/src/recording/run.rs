@@ -1,63 +1,63 @@
-//! The observer over the rows of a log.
+//! Runs the observer over the rows of a log.
 //!
 //! ```text
-//! row 0: y_0 -> observer, u_0 held -> row 1: y_1 -> observer, told of u_0 -> ..
+//! row 0: y_0 -> observer, u_0 held -> row 1: y_1, u_0 -> observer -> ..
 //! ```
 //!
-//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then on.
-//! No more than a row is in memory, and what is kept of the run does not grow with it.
+//! The same order as in a simulation: the outputs of a row are sampled at its instant, its inputs are held from then
+//! on. No more than a row is in memory, and the record of the run does not grow with it.
 
 use std::io::Write;
 use std::ops::ControlFlow;
 
-use crate::closed_loop::scenario::Judged;
+use crate::closed_loop::scenario::ScoredEstimate;
 use crate::closed_loop::trace::write_number;
 use crate::figure::Sheet;
 use crate::figure::label::Label;
-use crate::observe::certainty::Following;
-use crate::observe::excitation::Watch;
+use crate::observe::certainty::CertaintyMonitor;
+use crate::observe::driver::ObserverDriver;
+use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
-use crate::observe::stepping::Stepping;
-use crate::score::Scoring;
-use crate::score::expected::Expected;
-use crate::summary::{Rated, Summary};
+use crate::score::Scorer;
+use crate::score::expected::ExpectedErrors;
+use crate::summary::{EstimateScore, Summary};
 use pebo_design::program::Interpreter;
 
 use super::clock::{Clock, Instant};
 use super::failure::Failure;
-use super::fault::{Faults, Kind};
+use super::fault::{RowFault, RowFaults};
 use super::log::{Blank, Log, Next};
 use super::panels::Curves;
 use super::replayed::{OutputResidual, Replayed};
 use super::residual;
 use super::scene::Replay;
 
-/// Rows from one look at what the data determine to the next.
+/// Rows from one evaluation of the excitation to the next.
 const GLANCES: u64 = 32;
 
-/// Rows from one look at the caller's clock to the next.
+/// Rows from one report of progress to the next.
 const LOOKS: u64 = 1024;
 
 /// Times that are this many durations away from zero are shown from the first row on.
 const FAR: f64 = 20.0;
 
 impl Replay {
-    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` is told of rows and bytes
-    /// now and then, and may end the run there.
+    /// Runs the observer over all rows; estimates go to `estimates` as CSV, row by row. `watch` gets the numbers of
+    /// rows and bytes now and then, and may end the run there.
     pub fn run(
         &self,
         log: &mut Log,
         estimates: Option<&mut dyn Write>,
         watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<Replayed, Failure> {
-        let mut machine = Machine::start(self, estimates)?;
+        let mut machine = ReplayState::start(self, estimates)?;
         machine.header()?;
         loop {
             let next = machine.read(log)?;
             let line = match next {
                 Next::Row(line) => line,
                 Next::Cut(line) => {
-                    machine.faults.count(Kind::Cut, line);
+                    machine.faults.count(RowFault::Cut, line);
                     break;
                 }
                 Next::End => break,
@@ -75,25 +75,25 @@ impl Replay {
 }
 
 /// The observer at one row.
-struct Machine<'a, 'w> {
+struct ReplayState<'a, 'w> {
     replay: &'a Replay,
     clock: Clock,
     signals: Interpreter,
-    /// The cells of the row, and what they say.
+    /// The cells of the row, and the values of their signals.
     cells: Vec<f64>,
-    said: Vec<f64>,
+    values: Vec<f64>,
     /// All values, see [`Layout`](super::layout::Layout).
     table: Vec<f64>,
-    stepping: Stepping,
-    residuals: residual::Course<'a>,
+    driver: ObserverDriver,
+    residuals: residual::ResidualState<'a>,
     errors: (Interpreter, Vec<f64>),
-    faults: Faults,
+    faults: RowFaults,
     curves: Curves<'a>,
-    scores: Vec<Scoring>,
-    misfits: Vec<Scoring>,
-    watch: Watch,
-    expected: Expected,
-    certain: Following<'a>,
+    scores: Vec<Scorer>,
+    misfits: Vec<Scorer>,
+    watch: ExcitationMonitor,
+    expected: ExpectedErrors,
+    certain: CertaintyMonitor<'a>,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
@@ -105,7 +105,7 @@ struct Machine<'a, 'w> {
     text: String,
 }
 
-impl<'a, 'w> Machine<'a, 'w> {
+impl<'a, 'w> ReplayState<'a, 'w> {
     fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>) -> Result<Self, Failure> {
         let Replay { signals, layout, design, residuals, .. } = replay;
         Ok(Self {
@@ -113,19 +113,19 @@ impl<'a, 'w> Machine<'a, 'w> {
             clock: Clock::new(signals.period),
             signals: Interpreter::new(&signals.program),
             cells: vec![0.0; signals.wanted.len()],
-            said: vec![0.0; signals.program.outputs.len()],
+            values: vec![0.0; signals.program.outputs.len()],
             table: vec![0.0; layout.len()],
-            stepping: Stepping::new(observer(design).map_err(Failure::Refused)?),
+            driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
-            faults: Faults::default(),
+            faults: RowFaults::default(),
             curves: replay.panels.start(),
-            scores: replay.judged.iter().map(|judged| Scoring::new(judged.period)).collect(),
-            // Of these none is small in itself: what is told is the last tenth.
-            misfits: residuals.outputs.iter().map(|_| Scoring::new(Some(0.0))).collect(),
-            watch: Watch::default(),
-            expected: Expected::default(),
-            certain: Following::new(&design.wanted),
+            scores: replay.scored.iter().map(|scored| Scorer::new(scored.period)).collect(),
+            // None of these is small in itself: the score is that of the last tenth.
+            misfits: residuals.outputs.iter().map(|_| Scorer::new(Some(0.0))).collect(),
+            watch: ExcitationMonitor::default(),
+            expected: ExpectedErrors::default(),
+            certain: CertaintyMonitor::new(&design.wanted),
             rows: 0,
             samples: 0,
             first: None,
@@ -137,16 +137,16 @@ impl<'a, 'w> Machine<'a, 'w> {
     }
 
     fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
-        let Self { faults, replay, cells, stepping, .. } = self;
+        let Self { faults, replay, cells, driver, .. } = self;
         let wanted = &replay.signals.wanted;
-        // An output that is not there is no fault of an observer that leaves its row out.
+        // A missing output is no fault for an observer that leaves its row out.
         let is_part = |column: usize, blank| {
-            matches!(blank, Blank::Empty) && stepping.observer.has_parts() && replay.signals.of_outputs[column]
+            matches!(blank, Blank::Empty) && driver.observer.admits_partial() && replay.signals.of_outputs[column]
         };
         let place = |column: usize| wanted.iter().position(|known| *known == column).unwrap_or_default();
         let mut count = |column, blank, line| {
             if !is_part(place(column), blank) {
-                faults.count(Kind::of_cell(place(column), blank), line);
+                faults.count(RowFault::of_cell(place(column), blank), line);
             }
         };
         log.next(wanted, cells, &mut count).map_err(Failure::Unreadable)
@@ -155,25 +155,25 @@ impl<'a, 'w> Machine<'a, 'w> {
     /// Takes the row that was read.
     fn row(&mut self, line: u64) -> Result<(), Failure> {
         self.rows += 1;
-        self.signals.run(&self.cells, &mut self.said);
-        let (told, signals) = match self.replay.signals.period {
-            Some(_) => (f64::NAN, self.said.as_slice()),
-            None => (self.said[0], &self.said[1..]),
+        self.signals.run(&self.cells, &mut self.values);
+        let (measured_time, signals) = match self.replay.signals.period {
+            Some(_) => (f64::NAN, self.values.as_slice()),
+            None => (self.values[0], &self.values[1..]),
         };
-        let (t, dt) = match self.clock.row(told) {
+        let (t, dt) = match self.clock.row(measured_time) {
             Instant::First(t) => (t, 1.0),
             Instant::Later { t, dt, gap } => {
                 if gap {
-                    self.faults.count(Kind::Gap, line);
+                    self.faults.count(RowFault::Gap, line);
                 }
                 (t, dt)
             }
             Instant::Backwards => {
-                self.faults.count(Kind::Backwards, line);
+                self.faults.count(RowFault::Backwards, line);
                 return Ok(());
             }
             Instant::Timeless => {
-                self.faults.count(Kind::Timeless, line);
+                self.faults.count(RowFault::Timeless, line);
                 return Ok(());
             }
         };
@@ -187,11 +187,11 @@ impl<'a, 'w> Machine<'a, 'w> {
             if value.is_finite() {
                 self.table[layout.u.start + input] = value;
             } else {
-                self.faults.count(Kind::Input(input), line);
+                self.faults.count(RowFault::Input(input), line);
             }
         }
         if accepted {
-            // What a part of a sample says of residuals waits for a whole one.
+            // Residuals need a sample with all outputs.
             if self.is_whole() {
                 self.residuals.begin(&self.table, &self.table[layout.y.clone()]);
                 self.whole = t;
@@ -204,19 +204,19 @@ impl<'a, 'w> Machine<'a, 'w> {
         self.write(t)
     }
 
-    /// Gives the observer the outputs at the end of an interval, in which the inputs of the table were held; whether it
+    /// Passes to the observer the outputs at the end of an interval with the inputs of the table; returns true if it
     /// took them.
     fn sample(&mut self, t: f64, dt: f64, inputs: &[f64]) -> bool {
         // It begins where the inputs of the interval to come are known.
-        if !self.stepping.has_started() && inputs.iter().any(|input| !input.is_finite()) {
+        if !self.driver.has_started() && inputs.iter().any(|input| !input.is_finite()) {
             return false;
         }
         let layout = &self.replay.layout;
-        // An input holds for an interval: of one that moves on, the mean does. Residuals are of the instant.
-        layout.told.into_iter().for_each(|told| self.table[told] = t - dt / 2.0);
+        // An input holds for an interval, so the time is its mean there. Residuals are of the instant.
+        layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t - dt / 2.0);
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
-        let taken = self.stepping.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
-        layout.told.into_iter().for_each(|told| self.table[told] = t);
+        let taken = self.driver.arrive(&given[layout.y.clone()], &given[layout.u.clone()], dt, hat);
+        layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t);
         if taken.is_err() {
             return false;
         }
@@ -235,24 +235,24 @@ impl<'a, 'w> Machine<'a, 'w> {
         }
         let (errors, values) = &mut self.errors;
         errors.run(&self.table, values);
-        for ((score, judged), error) in self.scores.iter_mut().zip(&self.replay.judged).zip(values) {
+        for ((score, scored), error) in self.scores.iter_mut().zip(&self.replay.scored).zip(values) {
             // A cell without a number has been counted.
             if error.is_finite() {
-                score.add(t, *error, self.table[judged.truth]);
+                score.add(t, *error, self.table[scored.truth]);
             }
         }
         true
     }
 
-    /// Whether all outputs of the row are there.
+    /// True if all outputs of the row are there.
     fn is_whole(&self) -> bool {
         self.table[self.replay.layout.y.clone()].iter().all(|output| output.is_finite())
     }
 
-    /// Looks at what the data determine.
+    /// Evaluates excitation and certainty.
     fn look(&mut self) {
-        self.watch.look(self.last, &self.stepping.observer.said());
-        let predicted = self.stepping.standard_errors();
+        self.watch.look(self.last, &self.driver.observer.component_information());
+        let predicted = self.driver.standard_errors();
         self.certain.look(self.last, predicted.as_deref());
         self.expected.add(self.last, predicted);
     }
@@ -262,7 +262,7 @@ impl<'a, 'w> Machine<'a, 'w> {
         writeln!(file, "{}", self.replay.columns.join(",")).map_err(Failure::Unwritten)
     }
 
-    /// Writes the row; what is not known is an empty cell.
+    /// Writes the row, with empty cells for unknown values.
     fn write(&mut self, t: f64) -> Result<(), Failure> {
         let Some(file) = &mut self.estimates else { return Ok(()) };
         let text = &mut self.text;
@@ -293,15 +293,15 @@ impl<'a, 'w> Machine<'a, 'w> {
         let Replay { names, panels, residuals, title, design, .. } = self.replay;
         let faults = self.faults.worded([&names.columns, &names.u]);
         let Some(first) = self.first.filter(|_| self.samples > 0) else {
-            let refused = self.stepping.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
+            let refused = self.driver.faults().iter().map(|(reason, _)| reason.to_owned()).collect();
             return Err(Failure::Silent { rows: self.rows, faults, refused });
         };
-        let rated = |((judged, score), place): ((&Judged, &Scoring), &usize)| {
+        let rated = |((scored, score), place): ((&ScoredEstimate, &Scorer), &usize)| {
             let score = score.finish();
             let expected = self.expected.since(score.since, *place);
-            Rated { estimate: judged.estimate.clone(), score, expected, step: judged.step, outside: false }
+            EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: false }
         };
-        let misfit = |((output, _), score): (&(usize, bool), &Scoring)| OutputResidual {
+        let misfit = |((output, _), score): (&(usize, bool), &Scorer)| OutputResidual {
             output: names.y[*output].clone(),
             unit: names.units[*output].clone(),
             score: score.finish(),
@@ -324,13 +324,13 @@ impl<'a, 'w> Machine<'a, 'w> {
             summary: Summary {
                 end: self.last,
                 samples: self.rows - 1,
-                estimates: self.replay.judged.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
+                estimates: self.replay.scored.iter().zip(&self.scores).zip(&self.replay.measured).map(rated).collect(),
                 excitation: self.watch.excitation(&design.unknown_names),
-                faults: self.stepping.faults().clone(),
+                faults: self.driver.faults().clone(),
                 dropped: 0,
-                parted: self.stepping.parted(),
-                restarts: self.stepping.restarts(),
-                surprise: self.stepping.surprise(),
+                parted: self.driver.parted(),
+                restarts: self.driver.restarts(),
+                surprise: self.driver.surprise(),
                 certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),
             },

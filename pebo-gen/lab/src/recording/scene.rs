@@ -1,12 +1,12 @@
-//! A model and the header of a recording, resolved: everything that a replay needs, as programs.
+//! A replay: a model and the header of a recording, resolved to programs.
 //!
-//! In: an accepted derivation with what was written, and the columns. Out: the replay, or every mistake in the sections
-//! `observer` and `recording`. After this, only what is in the rows can go wrong.
+//! In: an accepted derivation with its model, and the columns. Out: the replay, or every mistake in the sections
+//! `observer` and `recording`. After this, only rows can be wrong.
 
-use crate::closed_loop::scenario::{Judged, Periods, judged};
+use crate::closed_loop::scenario::{Periods, ScoredEstimate, scored};
 use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
-use crate::observe::request::Asked;
+use crate::observe::request::Request;
 use crate::summary::advice::{Origin, advise};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -29,10 +29,10 @@ pub struct Replay {
     pub(super) signals: Signals,
     pub(super) design: Design,
     pub(super) layout: Layout,
-    /// Positions among the recovered states of those that were measured.
+    /// Indices of the measured states among the recovered ones.
     pub(super) measured: Vec<usize>,
     /// The estimates of these.
-    pub(super) judged: Vec<Judged>,
+    pub(super) scored: Vec<ScoredEstimate>,
     /// Their errors.
     pub(super) errors: Program,
     pub(super) residuals: Residuals,
@@ -43,7 +43,7 @@ pub struct Replay {
     pub(super) span: Span,
 }
 
-/// Names in the order of what they name.
+/// The names of signals, in their order.
 #[derive(Debug)]
 pub(super) struct Names {
     /// The columns that are read.
@@ -61,29 +61,29 @@ impl Replay {
     pub fn resolve(model: &Model, plant: &Plant, derivation: &Derivation, log: &Log) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let section = model.recording.as_ref().and_then(Recording::span).unwrap_or(model.name.span);
-        let asked = Asked { model, plant, section, who: "the replay" };
+        let request = Request { model, plant, section, who: "the replay" };
         let mut problems = Diagnostics::new();
-        asked.check(&mut problems);
-        // Every formula with a parameter that has no value would be reported again.
+        request.check(&mut problems);
+        // Every formula with a parameter without a value would be reported again.
         problems.propagate()?;
-        let replay = replay(&asked, derivation, log, &mut problems);
+        let replay = replay(&request, derivation, log, &mut problems);
         problems.propagate()?;
         // Without a replay there is an error, which was propagated.
         replay.ok_or_else(Vec::new)
     }
 
-    /// What there is to say of a recording on which the estimates did not converge: why, and what mends it.
+    /// The advice on a recording on which the estimates did not converge: reason and mend.
     pub fn advise(&self, replayed: &Replayed) -> Option<Diagnostic> {
         advise(&replayed.summary, (&self.design.settings.estimator, Origin::Recorded), self.span)
     }
 }
 
-fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diagnostics) -> Option<Replay> {
-    let (plant, arena, span) = (asked.plant, &asked.plant.arena, asked.section);
-    let numbers = asked.numbers();
-    let signals = Signals::resolve(asked, log, problems);
+fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut Diagnostics) -> Option<Replay> {
+    let (plant, arena, span) = (request.plant, &request.plant.arena, request.section);
+    let numbers = request.numbers();
+    let signals = Signals::resolve(request, log, problems);
     let period = signals.as_ref().and_then(|signals| signals.period).map(|(above, below)| above / below);
-    let design = Design::resolve(asked, derivation, &numbers, period, problems);
+    let design = Design::resolve(request, derivation, &numbers, period, problems);
     let (signals, design) = (signals?, design?);
     let layout = Layout::new(plant, &signals.measured, &design.recovered);
     let name = |symbol: Symbol| arena.name(symbol);
@@ -92,7 +92,7 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
     let measured: Vec<usize> =
         (0..hats.len()).filter(|place| layout.of_state(layout.estimated[*place].0).is_some()).collect();
     let compared: Vec<(String, Expr)> = measured.iter().map(|place| hats[*place].clone()).collect();
-    let (judged, errors) = judged((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &compared, &[]);
+    let (scored, errors) = scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &compared, &[]);
     let states: Vec<Symbol> = measured.iter().map(|place| layout.estimated[*place].0).collect();
     let errors = problems.keep(layout.program(arena, &errors, span))?;
     let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
@@ -110,7 +110,7 @@ fn replay(asked: &Asked, derivation: &Derivation, log: &Log, problems: &mut Diag
         design,
         layout,
         measured,
-        judged,
+        scored,
         errors,
         residuals,
         span,

@@ -1,12 +1,12 @@
-//! From the columns of a log to the signals of the plant.
+//! Resolves the signals of the plant in the columns of a log.
 //!
 //! In: the section `recording`, and the names of the columns. Out: a program from the cells of a row to its time and
-//! signals, or what is missing. A signal without a formula is the column of its own name.
+//! signals, or diagnostics of missing ones. A signal without a formula is the column of its own name.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::closed_loop::layout::program;
-use crate::observe::request::Asked;
+use crate::observe::design::program;
+use crate::observe::request::Request;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};
 use pebo_design::model::{Entry, Recording, unknown_name};
@@ -16,28 +16,27 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 
 use super::log::Log;
 
-/// What a row says.
+/// The signals of a row.
 #[derive(Debug)]
 pub(super) struct Signals {
     /// The columns that are read.
     pub(super) wanted: Vec<usize>,
-    /// From their cells to the time if rows say it, to the states that were measured, to outputs and to inputs but for
-    /// the time.
+    /// From their cells to the time if it is recorded, measured states, outputs, and inputs without the time.
     pub(super) program: Program,
-    /// The period as a fraction, if rows do not say their time.
+    /// The period as a fraction, if times are not recorded.
     pub(super) period: Option<(f64, f64)>,
     /// Positions in x of the states that were measured.
     pub(super) measured: Vec<usize>,
-    /// Whether the columns that are read say nothing but outputs.
+    /// For each column that is read, true if only outputs need it.
     pub(super) of_outputs: Vec<bool>,
 }
 
 impl Signals {
-    pub(super) fn resolve(asked: &Asked, log: &Log, problems: &mut Diagnostics) -> Option<Self> {
-        let written = asked.model.recording.clone().unwrap_or_default();
-        let columns = Columns::of(asked, log);
-        let mut pass = Pass { asked, log, written: &written, columns, problems };
-        let (plant, arena) = (asked.plant, &asked.plant.arena);
+    pub(super) fn resolve(request: &Request, log: &Log, problems: &mut Diagnostics) -> Option<Self> {
+        let written = request.model.recording.clone().unwrap_or_default();
+        let columns = Columns::of(request, log);
+        let mut pass = SignalResolver { request, log, written: &written, columns, problems };
+        let (plant, arena) = (request.plant, &request.plant.arena);
         let period = written.step.as_ref().map(|step| pass.period(step));
         let mut formulas = Vec::new();
         if period.is_none() {
@@ -60,7 +59,7 @@ impl Signals {
         let before = inputs - plant.y.len();
         let others = arena.symbols_of(&[&formulas[..before], &formulas[inputs..]].concat());
         let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
-        let program = problems.keep(program(arena, &symbols, &formulas, asked.section))?;
+        let program = problems.keep(program(arena, &symbols, &formulas, request.section))?;
         Some(Self { wanted, program, period, measured, of_outputs })
     }
 }
@@ -70,13 +69,13 @@ struct Columns {
     /// A symbol for each.
     symbols: Vec<Symbol>,
     scope: Scope,
-    /// Each name that there is, with the column that has it alone.
+    /// Each name, with its column if that is unique.
     places: BTreeMap<String, Option<usize>>,
 }
 
 impl Columns {
-    fn of(asked: &Asked, log: &Log) -> Self {
-        let arena = &asked.plant.arena;
+    fn of(request: &Request, log: &Log) -> Self {
+        let arena = &request.plant.arena;
         let symbols: Vec<Symbol> =
             (0..log.columns().len()).map(|place| arena.generated(&format!("column {}", place + 1))).collect();
         let mut places: BTreeMap<String, Option<usize>> = BTreeMap::new();
@@ -84,8 +83,8 @@ impl Columns {
             places.entry(name.clone()).and_modify(|other| *other = None).or_insert(Some(place));
         }
         let mut scope = Scope::new();
-        let numbers = asked.numbers();
-        let parameters = asked.plant.parameters.iter().map(|parameter| parameter.symbol);
+        let numbers = request.numbers();
+        let parameters = request.plant.parameters.iter().map(|parameter| parameter.symbol);
         let parameters: BTreeMap<String, Expr> =
             parameters.filter_map(|symbol| Some((arena.name(symbol), *numbers.get(&symbol)?))).collect();
         for (name, value) in &parameters {
@@ -106,16 +105,16 @@ impl Columns {
     }
 }
 
-struct Pass<'a> {
-    asked: &'a Asked<'a>,
+struct SignalResolver<'a> {
+    request: &'a Request<'a>,
     log: &'a Log<'a>,
     written: &'a Recording,
     columns: Columns,
     problems: &'a mut Diagnostics,
 }
 
-impl Pass<'_> {
-    /// The meaning of a formula; each of its names that is none is reported.
+impl SignalResolver<'_> {
+    /// The meaning of a formula; unknown names are reported.
     fn formula(&mut self, formula: &Formula) -> Option<Expr> {
         let known: BTreeSet<&str> =
             self.columns.scope.names().chain(self.columns.places.keys().map(String::as_str)).collect();
@@ -128,12 +127,12 @@ impl Pass<'_> {
         if !unknown.is_empty() {
             return None;
         }
-        self.problems.keep(lower(&self.asked.plant.arena, &self.columns.scope, formula))
+        self.problems.keep(lower(&self.request.plant.arena, &self.columns.scope, formula))
     }
 
     /// The period, a number above zero.
     fn period(&mut self, step: &Entry<Formula>) -> Option<(f64, f64)> {
-        let arena = &self.asked.plant.arena;
+        let arena = &self.request.plant.arena;
         let value = self.formula(&step.value)?;
         let number = arena.as_number(value).filter(|number| number.signum() > 0);
         if number.is_none() {
@@ -151,7 +150,7 @@ impl Pass<'_> {
             return self.formula(&entry.value);
         }
         let declared =
-            self.asked.plant.time.is_none() && self.asked.model.names().any(|name| name.value == Recording::T);
+            self.request.plant.time.is_none() && self.request.model.names().any(|name| name.value == Recording::T);
         if let Some(column) = self.column(Recording::T).filter(|_| !declared) {
             return Some(column);
         }
@@ -186,13 +185,13 @@ impl Pass<'_> {
     /// The column of this name.
     fn column(&self, name: &str) -> Option<Expr> {
         let place = (*self.columns.places.get(name)?)?;
-        Some(self.asked.plant.arena.of_symbol(self.columns.symbols[place]))
+        Some(self.request.plant.arena.of_symbol(self.columns.symbols[place]))
     }
 
     fn lacks(&mut self, what: &str, help: &str) {
         let message = format!("{} does not say {what}", self.log.name());
         self.problems.push(
-            Diagnostic::error(Code::RecordingIncomplete, self.asked.section, message).note(self.listed()).help(help),
+            Diagnostic::error(Code::RecordingIncomplete, self.request.section, message).note(self.listed()).help(help),
         );
     }
 

@@ -1,8 +1,8 @@
-//! How good the estimate of a state is, from its errors one after the other.
+//! Scores the estimate of a state by its errors, one after the other.
 //!
-//! In: at each instant the error, and how large the state is. Out: when the error fell for good below a hundredth of the
-//! state's largest magnitude, and how large it is from then on. Knows nothing of plants or observers, and keeps some
-//! thousand numbers however long the run is: which error counts as small is known only at its end.
+//! In: the error and the state at each instant. Out: the time at which the error fell for good below a hundredth of the
+//! state's largest absolute value, and its size from then on. Knows nothing of plants or observers, and keeps some
+//! thousand numbers in a run of any length: the threshold is known only at its end.
 
 pub(crate) mod expected;
 pub(crate) mod faults;
@@ -11,40 +11,40 @@ use serde::Serialize;
 
 use super::timing::real;
 
-/// The share of a state's largest magnitude that an estimate has settled to.
+/// The share of a state's largest absolute value within which an estimate has settled.
 pub const SETTLED: f64 = 0.01;
 
-/// The part of a run that errors are taken from where they have not settled: its end.
+/// The share of a run, at its end, whose errors are scored where they have not settled.
 const END: f64 = 0.1;
 
-/// The part of a run whose errors are compared with those of as long a part before.
+/// The share of a run whose errors are compared with those of an equal share before.
 const TREND: f64 = 0.25;
 
-/// The part of a run that an error stays small for at least: noise lets it be small for a moment.
+/// The least share of a run for which an error must remain small: noise makes it small for a moment.
 const HELD: f64 = 0.01;
 
-/// Errors that differ by less than this are one: the larger one, at the later instant.
+/// Errors with a ratio below this are merged: the larger one, at the later instant.
 const ALIKE: f64 = 1.005;
 
-/// Spans of time in which errors are added up: as many, or half of that and more.
+/// The most spans of time in which errors are summed; at least half of them are used.
 const SPANS: usize = 512;
 
-/// How good an estimate is.
+/// The score of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Score {
     /// The error at the first instant, estimate less truth.
     pub first: f64,
     /// The error at the last instant.
     pub last: f64,
-    /// From when on, in seconds, the error stays below a hundredth of the state's largest magnitude (of an angle: of its
-    /// period; of a state that is always 0: of its largest error); none if it does not, or not for the last hundredth of
-    /// the run.
+    /// The time in seconds from which on the error remains below a hundredth of the state's largest absolute value (of
+    /// an angle: of its period; of a state that is always 0: of its largest error); none if there is no such time, or
+    /// it is in the last hundredth of the run.
     pub settled: Option<f64>,
-    /// From when on the errors are told, in seconds: from when they have settled, else over the last tenth.
+    /// The time from which on errors are scored, in seconds: when they have settled, else the start of the last tenth.
     pub since: f64,
     /// Their root mean square, in the unit of the state.
     pub rms: f64,
-    /// The largest of their magnitudes.
+    /// Their largest absolute value.
     pub worst: f64,
     /// The root mean square in the last quarter of the run, over that in the quarter before.
     pub trend: f64,
@@ -52,11 +52,11 @@ pub struct Score {
 
 /// The errors of an estimate so far.
 #[derive(Clone, Debug)]
-pub(super) struct Scoring {
-    /// What a hundredth is meant of, if that is no magnitude of the state.
+pub(super) struct Scorer {
+    /// The reference of the threshold, if that is not the state's largest absolute value.
     period: Option<f64>,
     largest: f64,
-    /// Each larger than all that came after it.
+    /// Errors in descending order: each larger than all after it.
     stairs: Vec<Stair>,
     spans: Vec<Span>,
     /// Samples in a span that is full.
@@ -67,11 +67,11 @@ pub(super) struct Scoring {
     first: Option<(f64, f64)>,
 }
 
-/// The magnitude of an error.
+/// The absolute value of an error.
 #[derive(Clone, Copy, Debug)]
 struct Stair {
     error: f64,
-    /// Its instant, and that of the sample behind it.
+    /// Its instant, and that of the next sample.
     at: f64,
     next: f64,
 }
@@ -99,8 +99,8 @@ impl Span {
     }
 }
 
-impl Scoring {
-    /// Before the first sample; an angle has its period.
+impl Scorer {
+    /// The score before the first sample; `period` is that of an angle.
     pub(super) fn new(period: Option<f64>) -> Self {
         Self { period, largest: 0.0, stairs: Vec::new(), spans: Vec::new(), width: 1, last: (0.0, 0.0), first: None }
     }
@@ -139,7 +139,7 @@ impl Scoring {
         }
     }
 
-    /// What came of it.
+    /// The score of the errors so far.
     pub(super) fn finish(&self) -> Score {
         let scale = match self.period {
             Some(period) => period,
@@ -159,7 +159,7 @@ impl Scoring {
         // The span in which it settled has larger errors too.
         let after = over(since, end);
         let worst = match settled {
-            // Exact but for what counts as alike.
+            // Exact up to merged errors.
             Some(since) => {
                 self.stairs.iter().find(|stair| stair.at >= since).map_or(after.largest, |stair| stair.error)
             }
@@ -172,11 +172,11 @@ impl Scoring {
 
 #[cfg(test)]
 mod tests {
-    use super::{Score, Scoring};
+    use super::{Score, Scorer};
 
     /// The score of an error over `count + 1` instants from 0 to 10.
     fn score(count: u32, period: Option<f64>, error: impl Fn(f64) -> f64, truth: impl Fn(f64) -> f64) -> Score {
-        let mut scoring = Scoring::new(period);
+        let mut scoring = Scorer::new(period);
         for sample in 0..=count {
             let t = 10.0 * f64::from(sample) / f64::from(count);
             scoring.add(t, error(t), truth(t));
@@ -210,7 +210,7 @@ mod tests {
         let found = score(10_000, None, bump, |_| 1.0);
         assert!((found.settled.expect("it settles") - 6.0).abs() < 2e-3, "{found:?}");
         assert!((found.rms - 1e-3).abs() < 1e-9 && (found.worst - 1e-3).abs() < 1e-5, "{found:?}");
-        // At the very end it does not settle: what is told is the last tenth.
+        // At the very end it does not settle: the score is that of the last tenth.
         let found = score(10_000, None, |t| if t > 9.999 { 1.0 } else { 1e-3 }, |_| 1.0);
         assert_eq!((found.settled, found.since.round()), (None, 9.0));
         assert!((found.worst - 1.0).abs() < 1e-12);
@@ -220,12 +220,13 @@ mod tests {
     }
 
     #[test]
-    fn what_counts_as_small_depends_on_the_state() {
-        // From the start on, of a large state; never, of a small one; of an angle by its period; of a zero by its error.
+    fn the_threshold_of_settling_depends_on_the_state() {
+        // From the start on, of a large state; never, of a small one; of an angle by its period; of a zero by its
+        // error.
         let settled = |period, truth: f64| score(100, period, |t| 0.5 * (-t / 50.0).exp(), |_| truth).settled;
         assert_eq!((settled(None, 100.0), settled(None, 1.0)), (Some(0.0), None));
         assert_eq!((settled(Some(100.0), 1.0), settled(None, 0.0)), (Some(0.0), None));
-        // No number is no small error.
+        // NaN is no small error.
         assert_eq!(score(100, None, |_| f64::NAN, |_| 1.0).settled, None);
         assert!(score(100, None, |_| 0.0, |_| 0.0).settled.is_some_and(|t| t < 1e-12));
     }

@@ -1,11 +1,11 @@
-//! From standard deviations to the settings of least squares.
+//! Derives the settings of least squares from standard deviations.
 //!
 //! ```text
 //! P(0) = D_x phi start^2 D_x phi^T     Q = D phi disturbance^2 D phi^T + D_y z' sensors^2 D_y z'^T dt
 //! ```
 //!
-//! of which the diagonals are taken. Measured outputs drive the cascade, so what their sensors err by is noise of the
-//! process too. Of a regression whose unknowns are functions of theta, both are carried over to these functions.
+//! of which the diagonals are taken. Measured outputs drive the cascade, so the noise of their sensors is process noise
+//! too. For a regression whose unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::analysis::{Derivation, RegressionKind};
@@ -14,9 +14,9 @@ use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
-use super::derived::Tuned;
+use super::derived::DerivedSettings;
 use super::digits::rounded;
-use super::kind::Kind;
+use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::point::Point;
 #[cfg(feature = "simulate")]
@@ -24,36 +24,36 @@ use super::prediction::{Noise, Prediction};
 use super::spread::Slopes;
 use super::start::beginning;
 #[cfg(feature = "simulate")]
-use crate::settings::words::Known;
+use crate::settings::words::KnownNumbers;
 
-/// The bandwidth of a filter that nobody chose, times the period of the samples: ten of them to a time constant.
+/// The default bandwidth of a filter, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
 
-/// Of what is known exactly at the start, this part of the largest variance is left: none would be no covariance.
+/// The least variance at the start, as a share of the largest: zero would be no covariance.
 const CERTAIN: f64 = 1e-12;
 
-/// The settings that known numbers come to.
+/// The settings derived from known numbers.
 pub(super) fn derive(
     model: &Model,
     plant: &Plant,
     derivation: &Derivation,
     period: Option<f64>,
     problems: &mut Diagnostics,
-) -> Option<Tuned> {
+) -> Option<DerivedSettings> {
     let can_rebase = derivation.can_rebase(plant);
     let kind = kind(model, plant, derivation, problems)?;
-    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != Kind::Filtered) {
+    if let Some(hold) = model.observer.hold.as_ref().filter(|_| kind != ObserverKind::Filtered) {
         problems.push(idle_hold(plant, hold.span));
         return None;
     }
     let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
-    let formulas = Formulas::of(plant, derivation, kind == Kind::Output || frame.gate.is_some())?;
-    let said = Point::of(model, plant);
+    let formulas = Formulas::of(plant, derivation, kind == ObserverKind::Output || frame.gate.is_some())?;
+    let known = Point::of(model, plant);
     let asked = model.observer.known();
-    if let Some(lacking) = said.lacks(&formulas.needed(plant)) {
-        // Nobody asked for numbers: then there is no observer either.
+    if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
+        // Without known numbers in the section there is no observer either, and no complaint.
         if let Some((key, span)) = asked {
             problems.push(no_point(plant, (key, span), lacking));
         }
@@ -61,34 +61,34 @@ pub(super) fn derive(
     }
     let start = match frame.chi_0.clone() {
         Some(written) => written,
-        None => beginning(&said, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
+        None => beginning(&known, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
-    let point = completed(&said, plant, &formulas, &start)?;
-    let deviations = Deviations::of(model, plant, &said, period)?;
+    let point = completed(&known, plant, &formulas, &start)?;
+    let deviations = Deviations::of(model, plant, &known, period)?;
 
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, noise } = coordinates;
     #[cfg(feature = "simulate")]
-    let known = Known::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
+    let known = KnownNumbers::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
     let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
-        Kind::Output => {
+        ObserverKind::Output => {
             let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
             drift.splice(0..0, of_rows.iter().copied());
-            let of_rows = heard(&formulas.rates, &point, &deviations, period, &of_rows)?;
-            // The first sample is where the outputs begin.
+            let of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            // The outputs begin at the first sample.
             let start = rows.iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
             chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
             (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
         }
-        Kind::Sampled => {
+        ObserverKind::Sampled => {
             let [covariance, noise] = formulas.of_unknowns(&point, [&covariance, &noise])?;
             (Operator::Sampled(rows), covariance, noise)
         }
-        Kind::Filtered => {
+        ObserverKind::Filtered => {
             let Some(period) = period else {
                 if let Some(asked) = asked {
                     problems.push(no_period(plant, asked));
@@ -105,8 +105,8 @@ pub(super) fn derive(
     };
     let settings = Settings {
         operator,
-        output: kind == Kind::Output,
-        expected: if kind == Kind::Output { expected(plant, derivation) } else { None },
+        output: kind == ObserverKind::Output,
+        expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
         straight: frame.straight,
         estimator: Estimator::LeastSquares(Covariance {
             start,
@@ -123,10 +123,10 @@ pub(super) fn derive(
     };
     #[cfg(feature = "simulate")]
     let prediction = {
-        let is_heard = is_heard(plant, derivation, &formulas, kind);
-        Prediction::of(kind, is_heard, can_rebase, Noise { sensors: deviations.sensors, drift })
+        let is_elsewhere = is_elsewhere(plant, derivation, &formulas, kind);
+        Prediction::of(kind, is_elsewhere, can_rebase, Noise { sensors: deviations.sensors, drift })
     };
-    Some(Tuned {
+    Some(DerivedSettings {
         settings,
         #[cfg(feature = "simulate")]
         known: Some(known.predicted(&prediction)),
@@ -135,24 +135,24 @@ pub(super) fn derive(
     })
 }
 
-/// Whether the noise of a sample is elsewhere than in its row of the regression: in what the extension integrates, or in
-/// the left inverse.
+/// True if the noise of a sample is not only in its row of the regression, but in the flow of the extension or in the
+/// left inverse.
 #[cfg(feature = "simulate")]
-fn is_heard(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: Kind) -> bool {
+fn is_elsewhere(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: ObserverKind) -> bool {
     let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
     let y = plant.y.iter().map(|output| output.symbol).collect();
     let left_inverse = derivation.left_inverse.result.as_ref();
     let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
-    recovered || depends(&formulas.flow) || (kind == Kind::Output && depends(&formulas.rates))
+    recovered || depends(&formulas.flow) || (kind == ObserverKind::Output && depends(&formulas.rates))
 }
 
 /// Variances of the coordinates.
 struct Coordinates {
-    /// At the start.
+    /// The variances at the start.
     covariance: Vec<f64>,
-    /// Of what they drift by in a second.
+    /// The variances of their drift in a second.
     drift: Vec<f64>,
-    /// The same with what the sensors add, where outputs drive the cascade.
+    /// The same with the noise of the sensors, where outputs drive the cascade.
     noise: Vec<f64>,
 }
 
@@ -169,7 +169,7 @@ impl Coordinates {
         let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
         let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
         let drift = formulas.phi.variances(point, &drifts)?;
-        let noise = heard(&formulas.flow, point, deviations, period, &drift)?;
+        let noise = with_sensor_noise(&formulas.flow, point, deviations, period, &drift)?;
         let written = frame.process_noise.as_ref().map(all);
         Some(Self {
             covariance: frame.covariance.as_ref().map_or(at_start, all),
@@ -179,8 +179,8 @@ impl Coordinates {
     }
 }
 
-/// Variances with what the noise of samples adds to rates, a sample for a period.
-fn heard(
+/// Variances with the contribution of the samples' noise to rates, held for a period.
+fn with_sensor_noise(
     rates: &Slopes,
     point: &Point,
     deviations: &Deviations,
@@ -191,15 +191,15 @@ fn heard(
     Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
 }
 
-/// What the section says beside its standard deviations.
+/// The settings of the section beside its standard deviations.
 fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
     let states = derivation.left_inverse.result.as_ref()?.x.len();
     let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
     Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
 }
 
-/// The places of the outputs whose rates are used, if they stand alone under the derivative and states are recovered from
-/// outputs: then from those that are expected.
+/// The indices of the outputs whose rates are used, if they alone are under the derivative and states are recovered
+/// from outputs: then from the expected ones.
 fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     let regression = derivation.regression.result.as_ref()?;
     let inverse = derivation.left_inverse.result.as_ref()?;
@@ -208,8 +208,8 @@ fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
 }
 
-/// The rates through a filter. The rate of white samples errs by `alpha s` there at once, and no two time constants are
-/// independent: an intensity that is not too small for any time, over which least squares have their covariances.
+/// The rates through a filter. The filtered rate of white samples has the standard deviation `alpha s`, correlated over
+/// a time constant: the intensity is not too small over any time, and with it least squares have their covariances.
 fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (Operator<f64>, Vec<f64>, Vec<f64>) {
     let alpha = BANDWIDTH / period;
     let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
@@ -217,16 +217,16 @@ fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (O
     (Operator::Filter(alpha), over(covariance), over(noise))
 }
 
-/// What the regression admits and the section asks for.
-fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Kind> {
+/// The kind of observer that the regression admits and the section asks for.
+fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<ObserverKind> {
     let regression = derivation.regression.result.as_ref()?;
     let is_static = regression.kind == RegressionKind::Static;
     let written = model.observer.form.as_ref();
     let Some(form) = written.filter(|form| form.value == Form::Output) else {
         return Some(match written {
-            _ if is_static => Kind::Sampled,
-            None if derivation.can_rebase(plant) => Kind::Output,
-            _ => Kind::Filtered,
+            _ if is_static => ObserverKind::Sampled,
+            None if derivation.can_rebase(plant) => ObserverKind::Output,
+            _ => ObserverKind::Filtered,
         });
     };
     let refused = |message: String, help: &str| Diagnostic::error(Code::SettingConflict, form.span, message).help(help);
@@ -241,7 +241,7 @@ fn kind(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Di
             "remove `form`: it takes a regression that is affine in z, with theta itself as its unknown",
         )
     } else {
-        return Some(Kind::Output);
+        return Some(ObserverKind::Output);
     };
     problems.push(problem);
     None
@@ -278,12 +278,12 @@ fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
         .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
 }
 
-/// The point with a number for everything that slopes do not depend on, and for z, extension and unknowns.
-fn completed<'a>(said: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
+/// The point, completed with numbers for symbols that slopes do not depend on, and for z, extension and unknowns.
+fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[Rational]) -> Option<Point<'a>> {
     let signals = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).chain(plant.u.clone());
     let all: Vec<Symbol> = signals.chain(plant.w.clone()).chain(plant.parameters.iter().map(|p| p.symbol)).collect();
-    let missing: Vec<Symbol> = all.into_iter().filter(|symbol| said.of_symbol(*symbol).is_none()).collect();
-    let point = said.with(&missing, &vec![0.0; missing.len()]);
+    let missing: Vec<Symbol> = all.into_iter().filter(|symbol| known.of_symbol(*symbol).is_none()).collect();
+    let point = known.with(&missing, &vec![0.0; missing.len()]);
     let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
     let z = point.values(&phi)?;
     let chi_0: Vec<f64> = chi_0.iter().map(Rational::to_f64).collect();
@@ -296,18 +296,18 @@ fn completed<'a>(said: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &[
     Some(point.with(&formulas.eta, &eta))
 }
 
-/// The formulas whose slopes are asked for.
+/// The formulas whose slopes are needed.
 struct Formulas {
     /// phi, by x and y.
     phi: Slopes,
     /// The rates of z, by y.
     flow: Slopes,
-    /// What stands under the derivative, by y.
+    /// The primitive under the derivative, by y.
     held: Slopes,
-    /// Its rate, or what a static regression says to be zero, by y.
+    /// Its rate, or the residual of a static regression, by y.
     rates: Slopes,
-    /// How these slopes change with the unknowns, of each row.
-    bends: Vec<Expr>,
+    /// The derivatives of these slopes by the unknowns, for each row.
+    curvatures: Vec<Expr>,
     /// The unknowns, by theta.
     unknowns: Slopes,
     eta: Vec<Symbol>,
@@ -315,7 +315,7 @@ struct Formulas {
 }
 
 impl Formulas {
-    /// Of the whole regression where all equations serve, else of those with an unknown.
+    /// The formulas of the whole regression where all equations serve, else of those with an unknown.
     fn of(plant: &Plant, derivation: &Derivation, all_serve: bool) -> Option<Self> {
         let arena = &plant.arena;
         let cascade = derivation.cascade.result.as_ref()?;
@@ -330,8 +330,8 @@ impl Formulas {
         let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
         let flow: Vec<Expr> = match &cascade.lambda {
             Some(lambda) => {
-                let moved = cascade.h.iter().zip(lambda);
-                moved.map(|(h, row)| arena.add(*h, times(row, &plant.z))).collect()
+                let rates = cascade.h.iter().zip(lambda);
+                rates.map(|(h, row)| arena.add(*h, times(row, &plant.z))).collect()
             }
             None => cascade.h.clone(),
         };
@@ -360,7 +360,7 @@ impl Formulas {
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
             flow: Slopes::new(plant, &flow, &y),
-            bends: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
+            curvatures: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
             held: Slopes::new(plant, &held, &y),
             rates: Slopes::new(plant, &rates, &y),
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
@@ -369,9 +369,9 @@ impl Formulas {
         })
     }
 
-    /// What must have numbers: all slopes, and phi itself, at which most of them are taken.
+    /// The formulas that must have numbers: all slopes, and phi itself, at which most of them are taken.
     fn needed(&self, plant: &Plant) -> Vec<Expr> {
-        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.bends];
+        let slopes = [&self.phi.by, &self.flow.by, &self.held.by, &self.rates.by, &self.curvatures];
         let mut needed: Vec<Expr> = slopes.into_iter().flatten().copied().collect();
         let here = plant.z.iter().chain(&self.eta).chain(&plant.chi).chain(&plant.xi).copied().collect();
         if needed.iter().any(|slope| plant.arena.depends_on(*slope, &here)) {
@@ -391,19 +391,19 @@ impl Formulas {
     fn deviations(&self, point: &Point, sensors: &[f64], covariance: &[f64]) -> Option<Vec<f64>> {
         let rows = if self.is_static { &self.rates } else { &self.held };
         let variances = rows.variances(point, sensors)?;
-        let bends = point.values(&self.bends)?;
+        let curvatures = point.values(&self.curvatures)?;
         let width = sensors.len() * self.eta.len();
         let deviation = |(row, variance): (usize, f64)| {
             if variance > 0.0 {
                 return variance.sqrt();
             }
-            // Where the plant is, its outputs say nothing: away from there they do.
-            let bend = |(place, bend): (usize, &f64)| {
+            // A row without slope at the operating point has one away from it.
+            let curvature = |(place, curvature): (usize, &f64)| {
                 let (sensor, unknown) = (place / self.eta.len(), place % self.eta.len());
                 let spread = covariance.get(unknown).copied().unwrap_or(1.0);
-                (bend * sensors[sensor]).powi(2) * spread
+                (curvature * sensors[sensor]).powi(2) * spread
             };
-            let around: f64 = bends.iter().skip(row * width).take(width).enumerate().map(bend).sum();
+            let around: f64 = curvatures.iter().skip(row * width).take(width).enumerate().map(curvature).sum();
             if around > 0.0 { around.sqrt() } else { 1.0 }
         };
         Some(variances.into_iter().enumerate().map(deviation).collect())

@@ -1,4 +1,4 @@
-//! Settings beside what they were derived from.
+//! Settings with the known numbers behind them.
 
 use pebo_cas::Rational;
 use pebo_design::plant::Settings;
@@ -6,17 +6,17 @@ use pebo_design::plant::Settings;
 #[cfg(feature = "simulate")]
 use super::prediction::Prediction;
 #[cfg(feature = "simulate")]
-use crate::settings::words::Known;
+use crate::settings::words::KnownNumbers;
 
-/// Settings, and what they were derived from where they were.
+/// Settings, with the known numbers behind them where they were derived.
 #[derive(Clone, Debug)]
-pub struct Tuned {
-    /// With which an observer can be built.
+pub struct DerivedSettings {
+    /// The settings that an observer is built with.
     pub settings: Settings<Rational>,
-    /// What they were derived from; none where the author chose them.
+    /// The numbers that they were derived from; none where the author chose the settings.
     #[cfg(feature = "simulate")]
-    pub known: Option<Known>,
-    /// How the errors of the estimates are predicted.
+    pub known: Option<KnownNumbers>,
+    /// The prediction of the estimates' errors.
     #[cfg(feature = "simulate")]
     pub(crate) prediction: Prediction,
 }

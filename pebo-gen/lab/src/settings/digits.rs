@@ -1,8 +1,8 @@
-//! Numbers that are derived of others in floating point, as exact ones that settings can be written with.
+//! Rounds derived floating-point numbers to exact ones for settings.
 
 use pebo_cas::Rational;
 
-/// A number in four digits, if it is one with which can be computed.
+/// A number in four digits, if it is within the range of computation.
 pub(super) fn rounded(value: f64) -> Option<Rational> {
     const RANGE: std::ops::Range<f64> = 1e-100..1e100;
     if value == 0.0 {

@@ -1,8 +1,8 @@
-//! What the observer of known numbers is.
+//! The kinds of observers of known numbers.
 
-/// What the observer of known numbers is made of.
+/// The kind of an observer of known numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ObserverKind {
     /// The outputs themselves as the regressand.
     Output,
     /// A static regression, sample by sample.

@@ -1,7 +1,7 @@
-//! What is assumed where nothing is known: magnitudes at the start, and how long a change takes.
+//! Assumed standard deviations where none are known: orders of magnitude at the start, and times of changes.
 //!
-//! These numbers are no estimates of anything: they make an observer that converges on an exact model, whatever its units
-//! are, and follows changes of it within some hundred samples.
+//! These numbers estimate nothing: they make an observer that converges on an exact model, in any units, and follows
+//! changes of it within some hundred samples.
 
 use pebo_cas::Symbol;
 use pebo_design::model::{Decimal, Entry, Model, Spanned};
@@ -9,41 +9,41 @@ use pebo_design::plant::{Plant, State};
 
 use super::point::Point;
 
-/// A sensor errs by this part of what it shows at the start.
+/// The error of a sensor, as a share of its value at the start.
 const SENSOR: f64 = 1e-3;
 
-/// The start may be wrong by so many times the state.
+/// The error of the start, as a multiple of the state.
 const START: f64 = 10.0;
 
 /// Samples within which a constant drifts by its own magnitude.
 const SAMPLES: f64 = 1000.0;
 
-/// A state that has a rate drifts by this part of that: its rate says the rest.
-const MOVED: f64 = 0.02;
+/// The drift of a state that has a rate, as a share of the drift of a constant.
+const DRIFT: f64 = 0.02;
 
-/// Or as much as it would if all the summands of its rate erred by this part for so long; but by no more than its start may
-/// be wrong by. Summands that cancel, as those of a converter with a small inductance, would say that nothing is known of
-/// it after a few samples, and with such an observer no other unknown is told apart from it.
+/// Or its drift if all the summands of its rate had this relative error for that long; but no more than the error of
+/// its start. Summands that cancel, as those of a converter with a small inductance, would mean that nothing is known
+/// of it after a few samples, and with such an observer no other unknown is distinguished from it.
 const RATE: f64 = 0.01;
 
-/// A magnitude that is nowhere said: 1 of its unit.
+/// An unknown order of magnitude: 1 of its unit.
 const UNIT: f64 = 1.0;
 
 /// Standard deviations in the order of the plant's states and outputs, written or assumed.
 #[derive(Clone, Debug)]
 pub(super) struct Deviations {
-    /// Of the samples of each output.
+    /// The standard deviation of the samples of each output.
     pub(super) sensors: Vec<f64>,
-    /// Of each state at the start.
+    /// The standard deviation of each state at the start.
     pub(super) start: Vec<f64>,
-    /// Of what each state drifts by per root second.
+    /// The drift of each state per root second.
     pub(super) disturbance: Vec<f64>,
-    /// Of what each output drifts by besides its rate.
+    /// The drift of each output besides its rate.
     pub(super) of_outputs: Vec<f64>,
 }
 
 impl Deviations {
-    /// What the model says, and what is assumed in place of the rest; `period` is that of the samples.
+    /// The deviations of the model, and assumed ones in place of the rest; `period` is that of the samples.
     pub(super) fn of(model: &Model, plant: &Plant, point: &Point, period: Option<f64>) -> Option<Self> {
         let arena = &plant.arena;
         let written = &model.observer;
@@ -57,7 +57,7 @@ impl Deviations {
         let simulated = |symbol: Symbol| {
             let simulation = model.simulation.as_ref()?;
             let noise = of(&simulation.noise, symbol).unwrap_or_default();
-            // Rounding to the nearest multiple of a step errs evenly.
+            // The error of rounding to the nearest multiple of a step is uniformly distributed.
             let rounding = of(&simulation.quantisation, symbol).unwrap_or_default() / 12.0_f64.sqrt();
             Some(noise.hypot(rounding)).filter(|deviation| *deviation > 0.0)
         };
@@ -78,7 +78,7 @@ impl Deviations {
                     return Some(size / root);
                 }
                 let erring = if rate.is_finite() { (RATE * rate * root).min(START * size / root) } else { 0.0 };
-                Some((MOVED * size / root).max(erring))
+                Some((DRIFT * size / root).max(erring))
             }
             None => Some(0.0),
         };

@@ -1,14 +1,14 @@
-//! The numbers of an observer, from what is known of its sensors, its start and its disturbances.
+//! The settings of an observer, from the known numbers of its sensors, its start and its disturbances.
 //!
 //! ```text
 //! sensors, start, disturbance -> operating point -> slopes of phi, h and the regression -> covariance, process noise
 //! ```
 //!
-//! In: a model with its proved derivation. Out: settings with which the runtime's observer is built, the same for emitted
-//! code and for a run, and the numbers that they were derived from, to be shown. Where the author wrote gains these are the
-//! settings, and nothing is derived.
+//! In: a model with its proved derivation. Out: the settings of the runtime's observer, the same for emitted code and
+//! for a run, and the numbers behind them, for reports. Where the author wrote gains these are the settings, and
+//! nothing is derived.
 //!
-//! The observer of known numbers is least squares on samples that are weighed by their sensors: in the output form where the
+//! The observer of known numbers is least squares on samples weighted by their sensors: in the output form where the
 //! regression is of rates, re-based at every sample, which makes it a Kalman filter of the transformed plant. Where the
 //! regression cannot be re-based, its unknowns being functions of theta, it is least squares through a filter.
 
@@ -37,7 +37,7 @@ use pebo_design::plant::settings::{Limits, cannot_rebase};
 use pebo_design::plant::{Plant, Settings};
 use pebo_design::source::Diagnostics;
 
-pub use derived::Tuned;
+pub use derived::DerivedSettings;
 pub(crate) use start::start;
 
 #[cfg(feature = "simulate")]
@@ -45,11 +45,11 @@ pub(crate) use derive::BANDWIDTH;
 #[cfg(feature = "simulate")]
 pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]
-pub use words::{Known, Numbers, Value};
+pub use words::{KnownNumbers, Numbers, Value};
 
-impl Tuned {
-    /// The settings of the observer of a model. There are none where the model does not say enough; what is wrong with what
-    /// it says is reported. `period` is that of the samples in seconds, where the model does not say it.
+impl DerivedSettings {
+    /// The settings of a model's observer; none where the model is incomplete. Mistakes in it are reported. `period` is
+    /// that of the samples in seconds, where the model has none.
     pub fn of(
         model: &Model,
         plant: &Plant,
@@ -78,8 +78,8 @@ impl Tuned {
                 prediction: Prediction::None("gains do not say what sensors err by"),
             });
         }
-        let mut tuned = derive::derive(model, plant, derivation, period, problems)?;
-        tuned.settings.limits = limits;
-        Some(tuned)
+        let mut derived = derive::derive(model, plant, derivation, period, problems)?;
+        derived.settings.limits = limits;
+        Some(derived)
     }
 }

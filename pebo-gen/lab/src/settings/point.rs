@@ -1,7 +1,7 @@
-//! The operating point: where slopes are taken.
+//! The operating point, at which slopes are taken.
 //!
-//! In: the section `simulation`, which says where the plant starts and with which inputs. Out: numbers for parameters,
-//! states, outputs and inputs as far as they are said, and the values of formulas there.
+//! In: the section `simulation` with the plant's start and inputs. Out: numbers for parameters, states, outputs and
+//! inputs as far as they are known, and the values of formulas there.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub(super) struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    /// Where the model says that the plant starts; a formula that has no value there is left out.
+    /// The model's start of the plant; a formula that has no value there is left out.
     pub(super) fn of(model: &Model, plant: &'a Plant) -> Self {
         let arena = &plant.arena;
         let given = plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.as_ref()?.to_f64())));
@@ -67,7 +67,7 @@ impl<'a> Point<'a> {
             let law = simulation.control.iter().find(|entry| entry.name.value == name);
             point.set(input, law.and_then(|entry| lower(arena, &scope, &entry.value).ok()));
         }
-        // Outputs that are given by their value may need inputs.
+        // Outputs given by value may need inputs.
         for output in &plant.y {
             if !point.values.contains_key(&output.symbol) {
                 point.set(output.symbol, output.value.map(|value| value.expr));
@@ -83,7 +83,7 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// The same point with numbers for more symbols, or others.
+    /// The same point with more or other numbers.
     pub(super) fn with(&self, symbols: &[Symbol], numbers: &[f64]) -> Self {
         let mut point = self.clone();
         point.values.extend(symbols.iter().copied().zip(numbers.iter().copied()));
@@ -105,7 +105,7 @@ impl<'a> Point<'a> {
         all.find(|symbol| used.contains(symbol) && !self.values.contains_key(symbol))
     }
 
-    /// The values of formulas; what has none is NaN. None where a symbol has no number.
+    /// The values of formulas, NaN outside their domains. None where a symbol has no number.
     pub(super) fn values(&self, formulas: &[Expr]) -> Option<Vec<f64>> {
         let symbols: Vec<Symbol> = self.values.keys().copied().collect();
         let numbers: Vec<f64> = self.values.values().copied().collect();
@@ -121,7 +121,7 @@ impl<'a> Point<'a> {
     }
 }
 
-/// What signals begin with.
+/// The first pieces of signals.
 fn firsts(entries: &[Entry<Vec<Piece>>]) -> impl Iterator<Item = (&str, &Formula)> {
     entries.iter().filter_map(|entry| Some((entry.name.value.as_str(), &entry.value.first()?.formula)))
 }

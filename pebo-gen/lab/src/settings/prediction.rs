@@ -1,42 +1,42 @@
-//! How far the errors of an observer follow from the numbers that are known.
+//! Ways to predict an observer's errors from the known numbers.
 
-use super::kind::Kind;
+use super::kind::ObserverKind;
 
-/// How the standard errors of estimates follow from the numbers that are known.
+/// The way to predict the standard errors of estimates from the known numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Prediction {
     /// The covariance of least squares is that of the unknown.
     Covariance,
-    /// Not that alone: the noise of a sample is elsewhere than in its row of the regression too.
+    /// With a noise model besides: the noise of a sample is not only in its row of the regression.
     Noise(Noise),
-    /// Not at all, and why.
+    /// No prediction, with the reason.
     None(&'static str),
 }
 
-/// Noise that an observer has to do with.
+/// The noise that an observer meets.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Noise {
     /// The standard deviation of the samples of each output.
     pub sensors: Vec<f64>,
-    /// What each unknown drifts by besides, as a variance per second.
+    /// The drift of each unknown, as a variance per second.
     pub drift: Vec<f64>,
 }
 
 impl Prediction {
-    /// That of an observer, with whether noise is heard elsewhere than in its row, whether the extension follows the
-    /// estimate, and the noise.
-    pub(super) fn of(kind: Kind, is_heard: bool, can_rebase: bool, noise: Noise) -> Self {
+    /// The prediction for a kind of observer: `is_elsewhere` if noise is not only in its row, `can_rebase` if the
+    /// extension follows the estimate.
+    pub(super) fn of(kind: ObserverKind, is_elsewhere: bool, can_rebase: bool, noise: Noise) -> Self {
         match kind {
-            Kind::Filtered => Self::None(FILTERED),
-            _ if !is_heard => Self::Covariance,
+            ObserverKind::Filtered => Self::None(FILTERED),
+            _ if !is_elsewhere => Self::Covariance,
             _ if can_rebase => Self::Noise(noise),
             _ => Self::None(ACCUMULATES),
         }
     }
 }
 
-/// Why nothing is predicted of what went through a filter.
+/// The reason for a regression through a filter.
 const FILTERED: &str = "the filter makes the noise of one sample that of all later ones too";
 
-/// Why nothing is predicted of unknowns that are functions of theta.
+/// The reason for unknowns that are functions of theta.
 const ACCUMULATES: &str = "the noise of the outputs adds up in the extension, and the unknowns, which are functions of theta, do not follow it";

@@ -1,4 +1,4 @@
-//! How a standard deviation spreads through formulas.
+//! Propagates standard deviations through formulas.
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::plant::Plant;
@@ -20,14 +20,14 @@ impl Slopes {
         Self { formulas: formulas.to_vec(), symbols: symbols.to_vec(), by: formulas.iter().flat_map(by).collect() }
     }
 
-    /// The variance of each formula where the symbols err by these standard deviations, at a point: by the slopes there.
+    /// The variance of each formula for these standard deviations of the symbols, by the slopes at a point.
     pub(super) fn variances(&self, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
         let slopes = point.values(&self.by)?;
         let row = |row: &[f64]| row.iter().zip(deviations).map(|(slope, d)| square(slope * d)).sum();
         Some(slopes.chunks(self.symbols.len().max(1)).take(self.formulas.len()).map(row).collect())
     }
 
-    /// The same for deviations that are too large for slopes alone: with what the formulas change by over a deviation to
+    /// The same for deviations that are too large for slopes alone: with the change of the formulas over a deviation to
     /// either side, where they have a value there.
     pub(super) fn wide_variances(&self, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
         let mut variances = vec![0.0; self.formulas.len()];
@@ -41,7 +41,7 @@ impl Slopes {
                 let slope = (slopes[row * self.symbols.len() + column] * deviation).abs();
                 let changes = sides.iter().map(|side| (side[row] - middle[row]).abs());
                 let largest = changes.filter(|change| change.is_finite()).fold(f64::NAN, f64::max);
-                // A slope says little of a function that bends within the deviation.
+                // A slope says little of a function that is nonlinear within the deviation.
                 *variance += square(if largest.is_finite() { largest } else { slope });
             }
         }

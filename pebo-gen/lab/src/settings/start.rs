@@ -1,8 +1,8 @@
-//! Where the extension starts if nobody says so.
+//! Chooses the start of the extension by default.
 //!
-//! In: the left inverse, and where the plant starts as far as that is said. Out: numbers for z of which the left inverse has
-//! a value: zeros if it has one there, else phi of a state that the assumptions admit. A flux of 0 has no position, and what
-//! is divided by a component of phi none either.
+//! In: the left inverse, and the plant's start as far as it is known. Out: numbers for z where the left inverse has a
+//! value: zeros if it has one there, else phi of a state that the assumptions admit. A flux of 0 has no position, and
+//! neither has a quotient by a zero component of phi.
 
 use pebo_cas::{Expr, Rational, Relation, Symbol};
 use pebo_design::analysis::Derivation;
@@ -12,24 +12,23 @@ use pebo_design::plant::Plant;
 use super::digits::rounded;
 use super::point::Point;
 
-/// Parts of the state that the plant is said to start with which the extension may start from, the first that will do: not
-/// the state itself before all others, which the observer is to find.
-const PARTS: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
+/// Shares of the plant's start to try for the extension, in this order: the start itself last, as the observer is to
+/// find it.
+const SHARES: [f64; 4] = [0.5, 2.0, 0.9, 1.0];
 
-/// Of so many states, all signs are tried at a distance of 1 from zero.
+/// The most states whose signs are all tried at a distance of 1 from zero.
 const MOST_SIGNS: usize = 6;
 
-/// What stands for a signal or parameter that is nowhere said.
+/// The number for an unknown signal or parameter.
 const ANY: f64 = 1.0;
 
-/// The extension at the start of a model that does not say it; none where nothing was found of which the left inverse has a
-/// value.
+/// The default extension at the start; none where no point was found at which the left inverse has a value.
 pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     beginning(&Point::of(model, plant), plant, derivation)
 }
 
-/// The same where the plant is known to start at a point.
-pub(super) fn beginning(said: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+/// The same for a plant that starts at a known point.
+pub(super) fn beginning(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
     let left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
     let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
@@ -37,8 +36,8 @@ pub(super) fn beginning(said: &Point, plant: &Plant, derivation: &Derivation) ->
     let unknown = x.iter().copied().collect();
     let others = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied()).chain(plant.w.clone());
     let others = others.chain(plant.parameters.iter().map(|parameter| parameter.symbol));
-    let unsaid: Vec<Symbol> = others.filter(|symbol| said.of_symbol(*symbol).is_none()).collect();
-    let around = said.with(&unsaid, &vec![ANY; unsaid.len()]);
+    let missing: Vec<Symbol> = others.filter(|symbol| known.of_symbol(*symbol).is_none()).collect();
+    let around = known.with(&missing, &vec![ANY; missing.len()]);
     let has_value = |z: &[f64]| {
         let values = around.with(&plant.z, z).values(&left);
         values.is_some_and(|values| values.iter().all(|value| value.is_finite()))
@@ -59,8 +58,8 @@ pub(super) fn beginning(said: &Point, plant: &Plant, derivation: &Derivation) ->
         })
     };
     let origin = of_state(&vec![0.0; x.len()]);
-    let known: Option<Vec<f64>> = x.iter().map(|state| said.of_symbol(*state)).collect();
-    let near = known.into_iter().flat_map(|state| PARTS.map(|part| state.iter().map(|value| part * value).collect()));
+    let known: Option<Vec<f64>> = x.iter().map(|state| known.of_symbol(*state)).collect();
+    let near = known.into_iter().flat_map(|state| SHARES.map(|part| state.iter().map(|value| part * value).collect()));
     let signs = (0..1_usize << x.len().min(MOST_SIGNS)).map(|signs| -> Vec<f64> {
         (0..x.len()).map(|place| if signs >> place.min(MOST_SIGNS) & 1 == 1 { -1.0 } else { 1.0 }).collect()
     });

@@ -1,4 +1,4 @@
-//! Known numbers in, settings out; and what does not go together.
+//! Settings derived from known numbers, and contradictions.
 
 use pebo_cas::Rational;
 use pebo_design::analysis::Derivation;
@@ -7,7 +7,7 @@ use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Operator, Rebase, Settings};
 use pebo_design::source::{Diagnostic, Diagnostics, Source};
 
-use super::Tuned;
+use super::DerivedSettings;
 
 const CUK: &str = "
 model: cuk
@@ -25,7 +25,7 @@ const KNOWN: &str = "observer: {sensors: {v2: 0.1, v4: 0.2}, start: {i1: 5, i3: 
 
 const SCENARIO: &str = "simulation: {step: 1e-5, initial: {i1: 0.5, i3: -1, v2: 10, v4: -12}, control: {d: 0.5}}\n";
 
-fn tuned(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
+fn derived(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
     let model = match Source::new("test", text).map_err(|found| vec![found]).and_then(|source| Model::parse(&source)) {
         Ok(model) => model,
         Err(found) => return (None, found),
@@ -33,8 +33,8 @@ fn tuned(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
     let plant = Plant::resolve(&model).unwrap();
     let derivation = Derivation::derive(&plant);
     let mut problems = Diagnostics::new();
-    let tuned = Tuned::of(&model, &plant, &derivation, None, &mut problems);
-    (tuned.map(|tuned| tuned.settings), problems.into_vec())
+    let derived = DerivedSettings::of(&model, &plant, &derivation, None, &mut problems);
+    (derived.map(|derived| derived.settings), problems.into_vec())
 }
 
 fn numbers(settings: &Settings<Rational>) -> [Vec<f64>; 3] {
@@ -57,7 +57,7 @@ fn close(found: &[f64], expected: &[f64]) -> bool {
 
 #[test]
 fn deviations_become_covariances_through_the_slopes_of_phi() {
-    let (settings, problems) = tuned(&format!("{CUK}{KNOWN}{SCENARIO}"));
+    let (settings, problems) = derived(&format!("{CUK}{KNOWN}{SCENARIO}"));
     assert!(problems.is_empty(), "{problems:?}");
     let settings = settings.unwrap();
     let [start, noise, sensors] = numbers(&settings);
@@ -65,8 +65,8 @@ fn deviations_become_covariances_through_the_slopes_of_phi() {
     assert!(close(&sensors, &[0.1, 0.2]), "{sensors:?}");
     // The outputs' first samples, then (2*5)^2 and 3^2.
     assert!(close(&start, &[0.01, 0.04, 100.0, 9.0]), "{start:?}");
-    // v2' is free of outputs, v4' is not; 2*i1 drifts by 2, and by what the sample of v2 errs by: 2*(1 - d)*0.1/L1 = 10 over a
-    // step; i3 by d*0.1/L3 = 5 and 0.2/L3 = 20.
+    // v2' is free of outputs, v4' is not; 2*i1 drifts by 2, and by what the sample of v2 errs by: 2*(1 - d)*0.1/L1 = 10
+    // over a step; i3 by d*0.1/L3 = 5 and 0.2/L3 = 20.
     let of_v4 = (0.0447_f64 / 22.9e-6 * 0.2).powi(2) * 1e-5;
     let expected = [0.0, of_v4, 4.0 + 100.0 * 1e-5, (25.0 + 400.0) * 1e-5];
     assert!(close(&noise, &expected), "{noise:?} {expected:?}");
@@ -76,7 +76,7 @@ fn deviations_become_covariances_through_the_slopes_of_phi() {
 fn covariances_of_z_may_be_written() {
     let known =
         "observer: {sensors: {v2: 0.1, v4: 0.2}, covariance: [7, 8], process_noise: 0.5, within: {lower: -9}}\n";
-    let (settings, problems) = tuned(&format!("{CUK}{known}{SCENARIO}"));
+    let (settings, problems) = derived(&format!("{CUK}{known}{SCENARIO}"));
     let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
     let [start, noise, _] = numbers(&settings);
     assert!(close(&start[2..], &[7.0, 8.0]) && close(&noise[2..], &[0.5, 0.5]), "{start:?} {noise:?}");
@@ -84,16 +84,16 @@ fn covariances_of_z_may_be_written() {
 }
 
 #[test]
-fn where_nobody_says_a_number_there_are_settings_if_the_start_is_known() {
-    let (settings, problems) = tuned(&format!("{CUK}{SCENARIO}"));
+fn settings_need_no_known_numbers_if_the_start_is_known() {
+    let (settings, problems) = derived(&format!("{CUK}{SCENARIO}"));
     assert!(problems.is_empty() && settings.is_some_and(|settings| settings.output), "{problems:?}");
     // Nothing is known of the step: there is no observer, and no complaint.
-    assert_eq!(tuned(CUK), (None, Vec::new()));
+    assert_eq!(derived(CUK), (None, Vec::new()));
 }
 
 #[test]
-fn what_is_known_may_depend_on_where_the_plant_operates() {
-    let (settings, problems) = tuned(&format!("{CUK}{KNOWN}"));
+fn known_numbers_may_depend_on_the_operating_point() {
+    let (settings, problems) = derived(&format!("{CUK}{KNOWN}"));
     assert!(settings.is_none());
     assert!(problems[0].message.contains("`d` is not known"), "{problems:?}");
 }
@@ -118,7 +118,7 @@ fn unknown_names_bad_numbers_and_contradictions_are_reported() {
         ("sensors: {v2: 1e200}", "out of range"),
         ("sensors: {v2: 1}, start: {i1: 1e160}", "out of range"),
     ] {
-        let (_, problems) = tuned(&format!("{CUK}observer: {{{section}}}\n{SCENARIO}"));
+        let (_, problems) = derived(&format!("{CUK}observer: {{{section}}}\n{SCENARIO}"));
         let found = problems.iter().any(|problem| problem.message.contains(message) && problem.help.is_some());
         assert!(found, "{section}: {problems:?}");
     }
@@ -134,10 +134,10 @@ f_x: {a: -a}
 identities: [q - a]
 phi: [a]
 ";
-    let (_, problems) = tuned(&format!("{plant}observer: {{form: output}}\nsimulation: {{initial: {{a: 1, q: 1}}}}"));
+    let (_, problems) = derived(&format!("{plant}observer: {{form: output}}\nsimulation: {{initial: {{a: 1, q: 1}}}}"));
     assert!(problems[0].message.contains("no regression of rates"), "{problems:?}");
     let known = "observer: {sensors: {q: 0.1}, start: {a: 2}}\nsimulation: {step: 1, initial: {a: 1, q: 1}}";
-    let (settings, problems) = tuned(&format!("{plant}{known}"));
+    let (settings, problems) = derived(&format!("{plant}{known}"));
     let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
     let [start, noise, sensors] = numbers(&settings);
     assert!(!settings.output && close(&start, &[4.0]) && close(&sensors, &[0.1]), "{start:?} {sensors:?}");
@@ -162,7 +162,7 @@ phi: [U, U*(Th + Tc)]
 fn an_extension_starts_where_the_left_inverse_has_a_value() {
     // Th = z2/z1 - Tc has no value at zero, and phi of a state that is zero is zero.
     let start = |rest: &str| {
-        let (settings, problems) = tuned(&format!("{EXCHANGER}{rest}"));
+        let (settings, problems) = derived(&format!("{EXCHANGER}{rest}"));
         let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
         settings.chi_0.iter().map(Rational::to_f64).collect::<Vec<_>>()
     };
@@ -173,11 +173,11 @@ fn an_extension_starts_where_the_left_inverse_has_a_value() {
     assert_eq!(start(&format!("{gains}{scenario}")), [1.5, 67.5]);
     // The same for known numbers, in whose extension the output stands first.
     assert_eq!(start(scenario), [0.0, 1.5, 67.5]);
-    // Where nothing is said, a state of the domain at a distance of 1; what the author writes is what it is.
+    // Without a start, a state of the domain at a distance of 1; the author's own start is kept.
     assert_eq!(start(gains), [1.0, 2.0]);
     assert_eq!(start("observer: {gain: 1, filter: 1, extension: [0, 0]}\n"), [0.0, 0.0]);
     // Half of it is not in this domain, twice is: U = 6.
     let far = EXCHANGER.replace("assume: [", "assume: [Th > 40, ");
-    let (settings, _) = tuned(&format!("{far}{gains}{scenario}"));
+    let (settings, _) = derived(&format!("{far}{gains}{scenario}"));
     assert_eq!(settings.unwrap().chi_0[0], Rational::from(6));
 }

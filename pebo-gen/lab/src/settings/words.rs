@@ -1,31 +1,31 @@
-//! What an observer's numbers were derived from, and what they came to, in words.
+//! The known numbers behind an observer's settings, in words.
 
 use serde::Serialize;
 
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 
-use super::kind::Kind;
+use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::prediction::Prediction;
 
-/// What is known of sensors, start and disturbances, with what was derived of it.
+/// The known numbers of sensors, start and disturbances, with the derived ones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Known {
-    /// What the observer is, in words.
+pub struct KnownNumbers {
+    /// The kind of the observer, in words.
     pub observer: String,
     /// Each kind of number with its values.
     pub numbers: Vec<Numbers>,
-    /// Why no standard errors are predicted; none where they are.
+    /// The reason why no standard errors are predicted; none where they are.
     pub unpredicted: Option<String>,
 }
 
 /// Numbers of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Numbers {
-    /// What they are.
+    /// Their kind, in words.
     pub what: String,
-    /// Whether nobody wrote them.
+    /// True if they are assumed, not written by the author.
     pub assumed: bool,
     /// Names and values, with units.
     pub values: Vec<Value>,
@@ -34,20 +34,20 @@ pub struct Numbers {
 /// The value of a name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
-    /// Of what.
+    /// The name.
     pub name: String,
-    /// How much.
+    /// The value.
     pub value: f64,
-    /// In what unit, if the model has one.
+    /// The unit, if the model has one.
     pub unit: Option<String>,
 }
 
-impl Known {
+impl KnownNumbers {
     pub(super) fn new(
         plant: &Plant,
         model: &Model,
         deviations: &Deviations,
-        (kind, rebased): (Kind, bool),
+        (kind, rebased): (ObserverKind, bool),
         [covariance, noise]: [&[f64]; 2],
     ) -> Self {
         let arena = &plant.arena;
@@ -78,10 +78,10 @@ impl Known {
         drifts.extend(named(&y, &deviations.of_outputs, root).into_iter().filter(|drift| drift.value > 0.0));
         let numbers = |what: &str, assumed, values| Numbers { what: what.to_owned(), assumed, values };
         let observer = match (kind, rebased) {
-            (Kind::Output, _) => "output form, a Kalman filter of the transformed plant",
-            (Kind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
-            (Kind::Sampled, false) => "least squares of samples",
-            (Kind::Filtered, _) => "least squares through a filter",
+            (ObserverKind::Output, _) => "output form, a Kalman filter of the transformed plant",
+            (ObserverKind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
+            (ObserverKind::Sampled, false) => "least squares of samples",
+            (ObserverKind::Filtered, _) => "least squares through a filter",
         };
         let silent = written.known().is_none_or(|(key, _)| key == "form");
         Self {
@@ -97,7 +97,7 @@ impl Known {
         }
     }
 
-    /// The same with the reason for which nothing is predicted, if there is one.
+    /// The same with the reason why nothing is predicted, if there is one.
     pub(super) fn predicted(self, prediction: &Prediction) -> Self {
         let unpredicted = match prediction {
             Prediction::None(reason) => Some((*reason).to_owned()),

@@ -1,35 +1,35 @@
-//! Why a run did not converge, and what mends it.
+//! Advice on a run that did not converge: reason and mend.
 //!
-//! In: what a run came to, and in what its plant and sensors differ from what the model says, or that they were recorded.
+//! In: the summary of a run, and the differences of its plant and sensors from the model, or that they were recorded.
 //! Out: a diagnostic, if an estimate of the model's observer has not settled, or if a recording without measured states
-//! does not determine the unknown. What is said is what was seen: refused samples come first, then data
-//! that do not determine the unknown, then an error that still falls, then one that rests.
+//! does not determine the unknown. The reasons are tried in this order: refused samples, data that do not determine the
+//! unknown, an error that still falls, one that is constant.
 
 use pebo_design::source::{Code, Diagnostic, Span, listed};
 
-use super::{Rated, Summary, short};
+use super::{EstimateScore, Summary, short};
 use crate::observe::excitation::Excitation;
 use crate::observe::setup::Estimator;
 use crate::score::SETTLED;
 use crate::timing::real;
 
-/// More samples refused than this share explain by themselves that an estimate does not settle.
+/// The share of refused samples that by itself explains an estimate that does not settle.
 const REFUSED: f64 = 0.1;
 
-/// An error that is smaller than this part of what it was a quarter of the run before still falls. Of the noise of a
-/// sensor, a quarter of a run has rather many samples: what is left is well within a tenth of its root mean square.
+/// An error below this share of its value a quarter of the run before still falls. A quarter of a run has many samples
+/// of a sensor's noise, so their root mean square varies by well below a tenth.
 const FALLING: f64 = 0.9;
 
-/// Where the samples of a run are from.
+/// The source of a run's samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Origin<'a> {
-    /// A simulation, with that in which its plant and sensors differ from what the model says, and the first state that is
-    /// given a course, if no parameter is.
+    /// A simulation, with the differences of its plant and sensors from the model, and the first state that is given a
+    /// course, if no parameter is.
     Simulated(&'a [&'static str], Option<&'a str>),
     Recorded,
 }
 
-/// What there is to say of a run that did not converge; `where_said` is the section that describes it.
+/// The advice on a run that did not converge; `where_said` is the section that describes it.
 pub(crate) fn advise(
     summary: &Summary,
     (estimator, origin): (&Estimator, Origin<'_>),
@@ -41,7 +41,7 @@ pub(crate) fn advise(
         let message = "the recording does not determine all estimates";
         return unexcited(Diagnostic::warning(Code::NotConverged, where_said, message), summary).filter(|_| is_blind);
     };
-    let names = listed(unsettled.iter().map(|rated| rated.estimate.state.as_str()));
+    let names = listed(unsettled.iter().map(|scored| scored.estimate.state.as_str()));
     let message = match unsettled.len() {
         1 => format!("the estimate of {names} has not settled to 1 % within {} s", short(summary.end)),
         _ => format!("the estimates of {names} have not settled to 1 % within {} s", short(summary.end)),
@@ -63,8 +63,8 @@ pub(crate) fn advise(
         diagnostic
             .note(format!("the observer refused {refused} of {} samples: {reason}", summary.samples + 1))
             .help("keep samples in the domain of the observer's formulas, or estimates within bounds, as `within: {lower: 0}`")
-    } else if let Some(rated) = unsettled.iter().find(|rated| rated.outside) {
-        let state = &rated.estimate.state;
+    } else if let Some(scored) = unsettled.iter().find(|scored| scored.outside) {
+        let state = &scored.estimate.state;
         diagnostic
             .note(format!(
                 "`{state}` itself is beyond the bounds of `within` in this run, and its estimate is kept within them"
@@ -72,8 +72,8 @@ pub(crate) fn advise(
             .help(format!("widen the bounds of `{state}` under `within`, or start the plant within them"))
     } else if let Some(diagnostic) = unexcited(diagnostic.clone(), summary) {
         diagnostic
-    } else if let Some((rated, steps, step)) = unsettled.iter().find_map(|rated| steps_away(rated)) {
-        let state = &rated.estimate.state;
+    } else if let Some((scored, steps, step)) = unsettled.iter().find_map(|scored| steps_away(scored)) {
+        let state = &scored.estimate.state;
         let count = if steps.abs() > 1.0 { format!("{} steps", steps.abs()) } else { "one step".to_owned() };
         diagnostic
             .note(format!("the estimate of `{state}` is {count} of {} off, which the outputs do not show", short(step)))
@@ -110,9 +110,9 @@ pub(crate) fn advise(
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            (Origin::Simulated(departures @ [first, ..], moved), None) => {
+            (Origin::Simulated(departures @ [first, ..], state), None) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
-                let help = match moved {
+                let help = match state {
                     Some(state) if *first == "plant" => follow(state, (estimator, summary.known.is_some())),
                     _ => mend(first, summary.known.is_some()).to_owned(),
                 };
@@ -122,22 +122,22 @@ pub(crate) fn advise(
     })
 }
 
-/// The standard error that the observer expects, if the errors are no larger: then nothing else is wrong.
-fn explained(rated: &Rated) -> Option<f64> {
-    rated.expected.filter(|expected| rated.score.rms <= *expected)
+/// The standard error that the observer predicts, if the errors are no larger: then nothing else is wrong.
+fn explained(scored: &EstimateScore) -> Option<f64> {
+    scored.expected.filter(|expected| scored.score.rms <= *expected)
 }
 
-/// The number of steps that an estimate rests away from its state, and their length, where the outputs show the state only
-/// up to multiples of these.
-fn steps_away(rated: &Rated) -> Option<(&Rated, f64, f64)> {
-    let (step, error) = (rated.step?.abs(), rated.score.last);
+/// The number of steps by which an estimate is off its state, and their length, where the outputs determine the state
+/// only up to multiples of these.
+fn steps_away(scored: &EstimateScore) -> Option<(&EstimateScore, f64, f64)> {
+    let (step, error) = (scored.step?.abs(), scored.score.last);
     let count = (error / step).round();
-    // What an angle has settled to, and on average too: it was no moment on the way.
+    // Within the tolerance of settling, and on average too, so that it is no moment on the way.
     let rests = |error: f64| (error.abs() - count.abs() * step).abs() <= SETTLED * step;
-    (count != 0.0 && rests(error) && rests(rated.score.rms)).then_some((rated, count, step))
+    (count != 0.0 && rests(error) && rests(scored.score.rms)).then_some((scored, count, step))
 }
 
-/// With what there is to say of data that do not determine the unknown.
+/// Adds the advice on data that do not determine the unknown.
 fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
     match &summary.excitation {
         Excitation::Converged { .. } => None,
@@ -162,7 +162,7 @@ fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
     }
 }
 
-/// What helps an observer to follow a state that moves where the model has it constant.
+/// The help for a state that varies where the model has it constant.
 fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
     let setting = match estimator {
         _ if known => format!("raise `disturbance` of `{state}` under `observer`"),
@@ -175,8 +175,8 @@ fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
     )
 }
 
-/// What helps against the first of the things in which a plant and its sensors differ from the model; observers of known
-/// numbers have no filter and no gain to choose.
+/// The help for the first difference of a plant and its sensors from the model; observers of known numbers have no
+/// filter and no gain to choose.
 fn mend(departure: &str, known: bool) -> &'static str {
     match departure {
         "plant" => "measure the parameter that differs, or make it a state with rate 0, which is then estimated too",

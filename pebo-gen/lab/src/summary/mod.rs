@@ -1,7 +1,7 @@
-//! What a run comes to, for people and for programs.
+//! The summary of a run, for people and for programs.
 //!
-//! In: the scores of the estimates, what the data were good for, and the samples that were lost. Out: the same together,
-//! and as a table in text. Knows nothing of where samples are from.
+//! In: the scores of the estimates, the excitation, and the lost samples. Out: all of it as a structure and as a table
+//! in text. Independent of the source of samples.
 
 pub(crate) mod advice;
 
@@ -11,18 +11,18 @@ use super::score::Score;
 use crate::observe::certainty::Certainty;
 use crate::observe::excitation::Excitation;
 use crate::score::faults::Faults;
-use crate::settings::{Known, Numbers, Value};
+use crate::settings::{KnownNumbers, Numbers, Value};
 
-/// What a run comes to.
+/// The summary of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// When it ended, in seconds.
+    /// The time of its end, in seconds.
     pub end: f64,
     /// The samples after the first.
     pub samples: u64,
     /// The estimates of the model's observer, then those of each baseline.
-    pub estimates: Vec<Rated>,
-    /// What the data of the model's observer were good for.
+    pub estimates: Vec<EstimateScore>,
+    /// The excitation of the model's observer by its data.
     pub excitation: Excitation,
     /// The samples that the model's observer refused.
     pub faults: Faults,
@@ -30,35 +30,37 @@ pub struct Summary {
     pub dropped: u64,
     /// The samples that were taken without some of their outputs.
     pub parted: u64,
-    /// How often the model's observer began anew after a gap that was too long.
+    /// The number of restarts of the model's observer after gaps that were too long.
     pub restarts: u64,
-    /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right; none
-    /// where the observer does not know its sensors.
+    /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right;
+    /// none where the observer does not know its sensors.
     pub surprise: Option<f64>,
-    /// Whether estimates are known as well as `wanted`; none where nothing is wanted.
+    /// The certainty of estimates beside `wanted`; none where nothing is wanted.
     pub certainty: Option<Certainty>,
-    /// What the settings of the model's observer were derived from; none where the author chose them.
-    pub known: Option<Known>,
+    /// The known numbers behind the settings of the model's observer; none where the author chose them.
+    pub known: Option<KnownNumbers>,
 }
 
-/// The estimate of a state, with how good it was.
+/// The estimate of a state with its score.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rated {
-    /// Whose estimate, and of what.
+pub struct EstimateScore {
+    /// The estimate: its observer and its state.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// How good it was.
+    /// Its score.
     #[serde(flatten)]
     pub score: Score,
-    /// The standard error that the observer expects, from when the errors are told on; none where it does not know.
+    /// The standard error that the observer predicts, from the time on at which errors are scored; none where it does
+    /// not know.
     pub expected: Option<f64>,
-    /// What the outputs show the state up to multiples of, where it is not declared an angle; none where they show it.
+    /// The step up to whose multiples the outputs determine the state, where it is not declared an angle; none where
+    /// they determine it.
     pub step: Option<f64>,
-    /// Whether the state itself was beyond the bounds that `within` says of it, where that is known.
+    /// True if the state itself was beyond its bounds in `within`, where that is known.
     pub outside: bool,
 }
 
-/// Whose estimate, and of what.
+/// The estimate: its observer and its state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Estimate {
     /// The baseline; none for the model's own observer.
@@ -87,9 +89,9 @@ impl Estimate {
 
 impl Summary {
     /// The states whose estimates by the model's own observer did not settle.
-    pub fn unsettled(&self) -> Vec<&Rated> {
-        let own = self.estimates.iter().filter(|rated| rated.estimate.baseline.is_none());
-        own.filter(|rated| rated.score.settled.is_none()).collect()
+    pub fn unsettled(&self) -> Vec<&EstimateScore> {
+        let own = self.estimates.iter().filter(|scored| scored.estimate.baseline.is_none());
+        own.filter(|scored| scored.score.settled.is_none()).collect()
     }
 
     /// A table of the estimates, and a line each for excitation, faults and lost samples.
@@ -101,12 +103,12 @@ impl Summary {
         text
     }
 
-    /// The table of the estimates with its headings; a column that nobody has anything in is empty.
+    /// The table of the estimates with its headings; a column without entries is empty.
     pub fn rows(&self) -> Vec<[String; 7]> {
         let headings =
             ["error of", "at the start", "at the end", "settled to 1 %", "rms then", "worst then", "expected"];
         let mut rows = vec![headings.map(str::to_owned)];
-        for Rated { estimate, score, expected, .. } in &self.estimates {
+        for EstimateScore { estimate, score, expected, .. } in &self.estimates {
             let settled = match score.settled {
                 Some(t) => format!("{} s", short(t)),
                 None => "no".to_owned(),
@@ -116,8 +118,8 @@ impl Summary {
             let expected = expected.map_or_else(|| "-".to_owned(), short);
             rows.push([estimate.heading(), first, last, settled, short(score.rms), short(score.worst), expected]);
         }
-        // A column that nobody has anything in is none.
-        if self.estimates.iter().all(|rated| rated.expected.is_none()) {
+        // A column without entries is left out.
+        if self.estimates.iter().all(|scored| scored.expected.is_none()) {
             for row in &mut rows {
                 row[6].clear();
             }
@@ -125,7 +127,7 @@ impl Summary {
         rows
     }
 
-    /// What there is to say beside the table.
+    /// The lines below the table.
     pub fn lines(&self) -> Vec<String> {
         // The first is one of them too.
         let all = self.samples + 1;
@@ -201,7 +203,7 @@ pub(super) fn short(value: f64) -> String {
     if value == 0.0 {
         "0".to_owned()
     } else if (1e-3..1e4).contains(&magnitude) {
-        // Of each power of ten the decimals that leave three digits.
+        // The decimals that leave three digits, for each power of ten.
         let decimals = [1000.0, 100.0, 10.0, 1.0, 0.1, 0.01, 0.0].iter().position(|power| magnitude >= *power);
         format!("{value:.0$}", decimals.unwrap_or_default().saturating_sub(1))
     } else {

@@ -1,4 +1,4 @@
-//! Baselines by name, against what is known of them.
+//! Baselines by name, against their known properties.
 
 use crate::{Overrides, Trace};
 use pebo_design::source::Code;
@@ -14,7 +14,7 @@ fn errors(trace: &Trace, baseline: &str, state: &str) -> Vec<f64> {
     hat.iter().zip(truth).map(|(hat, truth)| hat - truth).collect()
 }
 
-/// A constant that is measured as it is: the filter's estimate is a mean, which this is worked out as here.
+/// A measured constant: the filter's estimate is a mean, which is computed here.
 #[test]
 fn the_filter_of_a_constant_is_the_mean_of_its_samples() {
     let text = "
@@ -39,7 +39,7 @@ simulation: {duration: 1, step: 0.01, initial: {c: 2}, noise: {p: 0.5}, baseline
     }
 }
 
-/// With a bias and dropped samples it is the mean of those that arrived: what it is given is what the observer is given.
+/// With a bias and dropped samples it is the mean of those that arrived, the same as the observer's.
 #[test]
 fn a_baseline_gets_the_samples_of_the_observer() {
     let text = "
@@ -66,7 +66,7 @@ simulation:
     assert!((samples - 120.0).abs() < 30.0 && (hat[200] - 3.0).abs() < 0.2, "{samples} {}", hat[200]);
 }
 
-/// Three states, of which the first two are seen by one output, and an output of another kind.
+/// Three states, the first two observable from one output, and an output of another kind.
 const CHAIN: &str = "
 model: chain
 x: [a, b]
@@ -116,7 +116,7 @@ fn the_extended_filter_of_an_affine_plant_is_the_filter() {
     for state in ["a", "b"] {
         assert_eq!(trace.column(&format!("kalman.{state}_hat")), trace.column(&format!("ekf.{state}_hat")));
     }
-    // The start is what the sensor shows.
+    // The start is the sensor's sample.
     let first = |name: &str| trace.column(name).unwrap()[0].to_bits();
     assert_eq!(first("kalman.a_hat"), first("p"));
     let error = errors(&trace, "kalman", "b");
@@ -145,7 +145,7 @@ fn a_plant_that_is_not_affine_is_linearised() {
     let trace = every_sample(PENDULUM);
     for (name, bound) in [("ekf", 5e-3), ("luenberger", 5e-2)] {
         let error = errors(&trace, name, "v");
-        // What is left: the noise, by the gain of the observer. Without disturbances the filter averages it.
+        // The rest is the noise, by the gain of the observer. Without disturbances the filter averages it.
         assert!((error[0] + 1.0).abs() < 1e-12 && error[500].abs() < bound, "{name} {}", error[500]);
     }
 }
@@ -164,7 +164,7 @@ fn a_baseline_without_sensors_has_those_of_the_observer() {
 }
 
 #[test]
-fn what_a_baseline_lacks_is_said() {
+fn missing_settings_of_a_baseline_are_reported() {
     let spring = |baseline: &str| {
         with(SPRING, "initial: {v: 0, q: 1}", &format!("initial: {{v: 0, q: 1}}, baselines: {{{baseline}}}"))
     };

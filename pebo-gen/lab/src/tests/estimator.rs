@@ -8,10 +8,10 @@ use pebo_runtime::{
 
 use super::{CUK_CASE_2, resolve, run};
 use crate::Overrides;
-use crate::observe::estimator::Chosen;
+use crate::observe::estimator::PaddedEstimator;
+use crate::observe::operator::Window;
 use crate::observe::setup::{self, Covariance, Extension};
 use crate::observe::sizes::{LARGEST, MOST_MIXED, padded};
-use crate::observe::window::Window;
 use pebo_design::source::Code;
 
 /// Case II of the converter with this section `observer`.
@@ -47,10 +47,10 @@ fn each_converges() {
     ];
     for section in sections {
         let [i1, v4] = remains(section);
-        // The 1 % that settling is told by.
+        // The 1 % of settling.
         assert!(i1 < 0.01 && v4 < 0.01, "{section}: {i1} {v4}");
     }
-    // The unknown of the voltage is 7.5: more than half of that is beyond this bound, and stays.
+    // The unknown of the voltage is 7.5: more than half of that is beyond this bound, and remains as error.
     let [_, v4] = remains("estimator: least-squares, covariance: [1e6, 1e10], bounds: {upper: [50, 3]}, filter: 1e3");
     assert!(v4 > 0.5, "{v4}");
 }
@@ -70,7 +70,7 @@ fn same(settings: &setup::Estimator, plain: impl Estimator<f64, 3, 2>) {
 }
 
 fn same_of<const N: usize>(settings: &setup::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
-    let mut erased = Chosen::<N>::new(settings).unwrap();
+    let mut erased = PaddedEstimator::<N>::new(settings).unwrap();
     for k in 0..50 {
         let (factor, known) = data(k);
         erased.advance(&padded_square(&factor), &padded(known.as_slice(), 0.0), 0.1).unwrap();

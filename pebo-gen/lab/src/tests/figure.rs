@@ -1,5 +1,5 @@
+use crate::closed_loop::trace::draw;
 use crate::figure::curve::Curve;
-use crate::figure::draw;
 use crate::{Overrides, Scenario};
 
 use super::{CUK_CASE_2, SPRING, resolve, with};
@@ -8,7 +8,7 @@ fn figure(scenario: &Scenario) -> String {
     draw(&scenario.run().unwrap(), scenario)
 }
 
-/// Whether every element is closed in its order, every attribute quoted, every entity known.
+/// Checks that every element is closed in its order, every attribute quoted, every entity known.
 fn assert_well_formed(svg: &str) {
     let mut open = Vec::new();
     let mut rest = svg;

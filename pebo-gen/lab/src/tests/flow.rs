@@ -1,7 +1,7 @@
 use crate::Overrides;
 use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
-use crate::closed_loop::ode::equation::Stuck;
+use crate::closed_loop::ode::equation::Standstill;
 use crate::closed_loop::signal::Signal;
 use pebo_cas::{Arena, Expr};
 use pebo_design::model::Model;
@@ -37,7 +37,7 @@ pub(super) fn course(arena: &Arena, formula: &str) -> Signal {
 }
 
 /// The state after each of `steps` steps of 0.1 s, where the table is time, one state and the signal `s`.
-fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Stuck> {
+fn integrate(rate: impl Fn(&Arena, Expr, Expr) -> Expr, signal: &str, steps: u8) -> Result<Vec<f64>, Standstill> {
     let arena = Arena::new();
     let (state, input) = (arena.variable("a"), arena.variable("s"));
     let symbols = [time(&arena), arena.symbol("a"), arena.symbol("s")];
@@ -73,7 +73,7 @@ fn a_signal_that_moves_is_followed_between_samples() {
 }
 
 #[test]
-fn what_cannot_be_integrated_ends() {
+fn an_impossible_integration_ends() {
     // Escapes to infinity at t = 1.
     assert!(integrate(|arena, a, _| arena.mul(a, a), "0", 20).is_err());
     // Leaves the domain of the root.
@@ -84,7 +84,7 @@ fn what_cannot_be_integrated_ends() {
 }
 
 #[test]
-fn what_dies_out_in_a_nanosecond_costs_a_few_steps() {
+fn a_transient_of_a_nanosecond_costs_a_few_steps() {
     // Leads to cos(20 t) with a time constant of 1 ns; the explicit method would need 3e7 steps for each 0.1 s.
     let fast = |arena: &Arena, a, s| arena.mul(arena.number(-1_000_000_000), arena.sub(a, s));
     let states = integrate(fast, "{0: cos(20*t)}", 10).unwrap();

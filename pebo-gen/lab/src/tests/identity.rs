@@ -3,15 +3,15 @@
 //!
 //! The identity is one of differential equations. A sampled observer integrates h by the trapezoidal rule, so its own
 //! chi is off by the square of the step; that says nothing about the transform. So the plant and the extension are
-//! integrated together here, as one equation, along the closed loop with the inputs that its observer led to; and what
-//! sampling adds is tested to be of second order, which is its cause.
+//! integrated here as one equation, along the closed loop with the inputs of its observer; and the error of sampling is
+//! tested to be of second order, which is its cause.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
-use crate::closed_loop::run::Machine;
+use crate::closed_loop::run::LoopState;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -22,17 +22,18 @@ use pebo_design::program::{Interpreter, lower};
 use super::run::ROTATION;
 use super::{read, with};
 
-/// The share of a component's largest magnitude so far by which the two sides may differ. Relative to that, and not
-/// to the magnitude of the instant, since momenta and currents pass through zero.
+/// The share of a component's largest absolute value so far by which the two sides may differ. Relative to that, and
+/// not to the value at the instant, since momenta and currents pass through zero.
 const SHARE: f64 = 1e-9;
 
-/// What is rounding: some hundred units in the last place of the two sides, which are summed up from a run's steps.
+/// The rounding error: some hundred units in the last place of the two sides, which are summed up from a run's steps.
 const ROUNDING: f64 = 1e-13;
 
 /// Samples in which the sampled extension is compared; enough for the inputs and outputs to move.
 const SAMPLES: u64 = 200;
 
-/// Samples of a whole run in which the identity is looked at: the loop is closed through the estimates, at least so often.
+/// Samples of a whole run in which the identity is looked at: the loop is closed through the estimates, at least so
+/// often.
 const MOST_SAMPLES: u64 = 20_000;
 
 /// The closed loop of a text, with the programs of its transform.
@@ -43,8 +44,8 @@ struct Loop {
 }
 
 impl Loop {
-    /// Without re-basing, which gives up the identity at every sample for another, without the steps of a plant, of
-    /// which no transform knows, and without baselines and what shows them.
+    /// Without re-basing, which replaces the identity at every sample by another, without the steps of a plant, which
+    /// no transform knows, and without baselines and their panels.
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
         model.observer.rebase = Rebase::default();
@@ -91,8 +92,8 @@ impl Loop {
         (symbols, rates, start)
     }
 
-    /// The largest difference of the two sides along the run, as a share of the component. Sampled so often at most: the
-    /// identity does not depend on the sampling.
+    /// The largest difference of the two sides along the run, as a share of the component. Sampled so often at most:
+    /// the identity does not depend on the sampling.
     fn worst(&self, samples: u64) -> f64 {
         let own = self.scenario(&Overrides::default());
         let step = own.timing.step.max(own.timing.at(own.samples()) / crate::timing::real(samples));
@@ -109,7 +110,7 @@ impl Loop {
         let state = 1..=states.len() + extension.len();
         let state = *state.start()..state.end() + 1;
 
-        let mut machine = Machine::start(&scenario).unwrap();
+        let mut machine = LoopState::start(&scenario).unwrap();
         let mut table = vec![0.0; symbols.len()];
         for (state, place) in states.iter().zip(1..) {
             let position = layout.symbols.iter().position(|symbol| symbol == state).unwrap();
@@ -151,8 +152,8 @@ impl Loop {
         worst
     }
 
-    /// By how much the observer's own, sampled, extension is off after some samples: the largest over the time of
-    /// `SAMPLES` steps of the file's, each component, and what of that may be rounding.
+    /// The error of the observer's own, sampled, extension after some samples: the largest over the time of `SAMPLES`
+    /// steps of the file's, for each component, with its possible rounding.
     fn sampled(&self, refined: u64) -> Vec<(f64, f64)> {
         let step = self.scenario(&Overrides::default()).timing.step;
         let refine = |steps: u64| step / crate::timing::real(steps);
@@ -162,7 +163,7 @@ impl Loop {
         let symbols = &layout.symbols[..layout.state.end];
         let z_of = lower(&plant.arena, symbols, &self.at_values(&plant.transform())).unwrap();
         let mut z_of = Interpreter::new(&z_of);
-        let mut machine = Machine::start(&scenario).unwrap();
+        let mut machine = LoopState::start(&scenario).unwrap();
         let mut z = vec![0.0; plant.phi.len()];
         z_of.run(&machine.table[..symbols.len()], &mut z);
         let theta: Vec<f64> = z.iter().zip(&scenario.design.settings.chi_0).map(|(z, chi)| z - chi).collect();
@@ -171,8 +172,7 @@ impl Loop {
             machine.control().unwrap();
             machine.advance(sample).unwrap();
             z_of.run(&machine.table[..symbols.len()], &mut z);
-            for ((z, other), (off, scale)) in
-                z.iter().zip(machine.stepping.observer.coordinates(&theta)).zip(&mut worst)
+            for ((z, other), (off, scale)) in z.iter().zip(machine.driver.observer.coordinates(&theta)).zip(&mut worst)
             {
                 *off = off.max((z - other).abs());
                 *scale = scale.max(z.abs()).max(1e-3);
@@ -225,7 +225,7 @@ fn the_coordinates_are_extension_and_theta_all_along() {
 }
 
 #[test]
-fn what_sampling_adds_is_of_second_order() {
+fn the_error_of_sampling_is_of_second_order() {
     for (name, text) in models() {
         let closed = Loop::of(&text);
         for (component, (coarse, fine)) in closed.sampled(2).into_iter().zip(closed.sampled(4)).enumerate() {

@@ -1,10 +1,10 @@
-//! What samples may be, and how long the observer waits for one.
+//! Limits of samples, and gaps between them.
 
 use crate::{Certainty, Overrides};
 
 use super::{SPRING, resolve, run, with};
 
-/// The spring from rest's place, so that its first sample is within limits; q is sin(2 t).
+/// The spring from its equilibrium, so that its first sample is within limits; q is sin(2 t).
 fn spring(observer: &str, simulation: &str) -> String {
     let moving = with(SPRING, "initial: {v: 0, q: 1}", &format!("initial: {{v: 2, q: 0}}{simulation}"));
     with(&moving, "filter: 5", &format!("filter: 5{observer}"))
@@ -19,7 +19,8 @@ fn a_sample_off_its_range_is_refused_and_bridged() {
     // either side of each of the 13 crossings.
     assert!(matches!(refused[..], [(reason, 266..=279)] if reason.contains("output sample 0")), "{refused:?}");
     assert_eq!((summary.restarts, summary.dropped), (0, 0));
-    // A gap of 0.45 s, a seventh of the period, is bridged by a straight line: the estimate errs by some percent of 2 m/s.
+    // A gap of 0.45 s, a seventh of the period, is bridged by a straight line: the estimate errs by some percent of 2
+    // m/s.
     assert!(summary.estimates[0].score.rms < 0.1, "{}", summary.text());
     // No number of them ends the run, also at its start.
     let low = run(&spring(", limits: {q: [-2, -0.1]}", "").replace("step: 0.01", "step: 1e-3"), &Overrides::default());
@@ -75,13 +76,13 @@ simulation: {duration: 10, step: 0.01, initial: {F: 3, v: 0}, control: {a: -v}, 
 ";
 
 #[test]
-fn certainty_is_told_beside_what_is_wanted() {
+fn certainty_is_reported_beside_the_wanted_one() {
     let line = |wanted: &str| {
         let text = with(FORCE, "disturbance: {F: 0.1}", &format!("disturbance: {{F: 0.1}}, wanted: {{F: {wanted}}}"));
         let text = run(&text, &Overrides::default()).summary().text();
         text.lines().find(|line| line.starts_with("certainty: ")).map(str::to_owned)
     };
-    // What such sensor and drift come to: P = q sqrt(r dt) of the pair (v, F) is about 0.04^2.
+    // The covariance for this sensor and drift: P = q sqrt(r dt) of the pair (v, F) is about 0.04^2.
     assert!(line("0.2").is_some_and(|line| line.starts_with("certainty: as wanted from t = 0.")), "{:?}", line("0.2"));
     assert!(line("1e-3").is_some_and(|line| line.contains("not yet, `F` is known to 0.0")), "{:?}", line("1e-3"));
     assert_eq!(run(FORCE, &Overrides::default()).summary().certainty, None);
@@ -99,7 +100,7 @@ fn certainty_is_lost_while_no_sample_is_taken() {
 }
 
 #[test]
-fn bounds_that_exclude_the_truth_are_told_and_leave_the_standard_error() {
+fn bounds_that_exclude_the_truth_are_reported_and_leave_the_standard_error() {
     let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.1}, within: {lower: 5, upper: 6}");
     let scenario = resolve(&text, &Overrides::default()).unwrap();
     let trace = scenario.run().unwrap();
@@ -129,7 +130,7 @@ fn a_state_that_moves_is_followed_by_a_disturbance() {
 
 #[test]
 fn time_in_a_plant_is_an_input_as_one_that_is_declared() {
-    // Of a force that hardly drifts: to less than a hundredth.
+    // A force that hardly drifts is known to less than a hundredth.
     let text = with(FORCE, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
     let text = with(&text, "v: F + a", "v: F + a + sin(t)");
     let trace = run(&text, &Overrides::default());
@@ -138,7 +139,8 @@ fn time_in_a_plant_is_an_input_as_one_that_is_declared() {
     let declared = with(&declared, "control: {a: -v}", "control: {a: -v, time: t + 0.01/2}");
     let other = run(&declared, &Overrides::default());
     let [found, expected] = [&trace, &other].map(|trace| trace.column("F_hat").unwrap());
-    // The plant with the declared input has its steps, each of which is off by less than dt^3 s^-2/24 m/s; the noise is one.
+    // The plant with the declared input has its steps, each of which is off by less than dt^3 s^-2/24 m/s; the noise is
+    // one.
     let apart = found.iter().zip(&expected).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
     assert!(apart < 1e-4, "{apart}");
 }

@@ -1,4 +1,4 @@
-//! Scenarios from model files in, what they do out.
+//! Runs of scenarios from model files.
 
 mod baseline;
 

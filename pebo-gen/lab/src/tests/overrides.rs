@@ -1,4 +1,4 @@
-//! What a call says that a file cannot.
+//! Settings of a call that a file cannot have.
 
 use crate::Overrides;
 use pebo_design::model::Estimator;

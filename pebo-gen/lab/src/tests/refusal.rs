@@ -4,7 +4,7 @@ use pebo_design::source::{Code, Diagnostic, Source, Span};
 
 use super::{CUK, CUK_CASE_2, SPRING, resolve, with};
 
-/// Model, part, replacement, code, what the message says, what is underlined.
+/// Model, part, replacement, code, message, underlined text.
 const MISTAKES: &[(&str, &str, &str, Code, &str, &str)] = &[
     (SPRING, "{k: 4}", "[k]", Code::SimulationIncomplete, "parameter `k`", "k"),
     (SPRING, "duration: 10, ", "", Code::SimulationIncomplete, "no duration", "0.01"),
@@ -101,7 +101,7 @@ fn a_parameter_without_a_value_is_reported_once() {
 }
 
 #[test]
-fn a_model_without_the_section_is_told_so() {
+fn a_model_without_the_section_is_reported() {
     let text = with(SPRING, "simulation: {duration: 10, step: 0.01, initial: {v: 0, q: 1}}", "");
     let found = refusals(&text);
     assert_eq!(found.len(), 1);

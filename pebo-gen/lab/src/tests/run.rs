@@ -131,7 +131,7 @@ simulation: {duration: 20, step: 0.01, initial: {a: 1, b: -2, q: 0}, control: {o
 ";
 
 #[test]
-fn estimates_stay_within_what_the_states_are() {
+fn estimates_remain_within_the_bounds_of_the_states() {
     let bounded = with(ROTATION, "filter: 5}", "filter: 5, within: {lower: [0.5, -9], upper: [3, -0.5]}}");
     let (bounded, free) = (run(&bounded, &short(1.0)), run(ROTATION, &short(1.0)));
     let column = |trace: &Trace, name: &str| trace.column(name).unwrap();
@@ -202,7 +202,7 @@ fn an_unmeasured_signal_runs_its_course() {
     let trace = scenario.run().unwrap();
     let column = |name: &str| trace.column(name).unwrap();
     for ((l1, l2), (i1, i2)) in column("l1").iter().zip(column("l2")).zip(column("i1").iter().zip(column("i2"))) {
-        // The magnet keeps its flux: what the regression is made of.
+        // The magnet keeps its flux: the regression's equation.
         let flux = (l1 - 0.04003 * i1).hypot(l2 - 0.04003 * i2);
         assert!((flux - 0.2086).abs() < 1e-7, "{flux}");
     }
@@ -232,9 +232,9 @@ fn the_error_of_an_angle_is_the_shorter_way_round() {
     assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
 }
 
-/// What the outputs show only up to a turn may rest a turn away: no gain mends that.
+/// An estimate of a state that the outputs determine only up to a turn may settle a turn away: no gain mends that.
 #[test]
-fn an_estimate_that_rests_a_turn_away_is_told_so() {
+fn an_estimate_a_turn_away_is_reported() {
     let rotor = "model: rotor\nx: [q]\ny: [a, b]\nu: [w]\nf_x: {q: w}\nf_y: {a: sin(q), b: cos(q)}\nphi: [q]\n\
                  simulation: {duration: 10, step: 0.01, initial: {q: 7, a: 0, b: 1}, control: {w: 0.5}}\n";
     let advice = |text: &str| {
@@ -251,8 +251,7 @@ fn an_estimate_that_rests_a_turn_away_is_told_so() {
     assert!(note.contains("is 2 steps of 6.28 off"), "{note}");
 }
 
-/// A regression that stands under the derivative as well: what is moved from the extension into the unknown is nothing that
-/// the estimate sees.
+/// A regression with a primitive: a shift from the extension into the unknown changes no estimate.
 #[test]
 fn rebasing_changes_no_estimate_of_a_relation_under_the_derivative() {
     let motor = include_str!("../../../../models/motor_currents.yaml");
@@ -265,7 +264,8 @@ fn rebasing_changes_no_estimate_of_a_relation_under_the_derivative() {
     let plain = estimates("");
     assert!(plain.first() != plain.last(), "nothing was estimated");
     for form in ["1", "100", "{samples: 7}", "{above: 0.05}", "{leak: 5}"] {
-        // Thirty thousand steps round by 2^-53 each, of which the sum is 3e-12 and the root of the sum of squares 2e-14.
+        // Thirty thousand steps round by 2^-53 each, of which the sum is 3e-12 and the root of the sum of squares
+        // 2e-14.
         for (one, other) in plain.iter().zip(estimates(&format!("  rebase: {form}\n"))) {
             assert!((one - other).abs() < 1e-12, "{form}: {one} {other}");
         }

@@ -50,7 +50,7 @@ fn a_delay_of_whole_samples_is_a_shift() {
     for (delay, samples) in [("0.01", 1), ("{q: 0.05}", 5), ("0", 0)] {
         let late = column(&sampled(&spring(&format!("delay: {delay}")), 1), "q");
         for (sample, late) in late.iter().enumerate() {
-            // What was before the start is the start.
+            // Before the start the output is constant.
             assert_eq!(late.to_bits(), ideal[sample.saturating_sub(samples)].to_bits(), "{delay} {sample}");
         }
     }
@@ -69,7 +69,7 @@ fn a_part_of_a_step_is_interpolated_between_its_ends() {
 }
 
 #[test]
-fn jitter_moves_the_instants_and_nobody_is_told() {
+fn jitter_moves_the_instants_unmeasured() {
     let trace = sampled(&spring("jitter: 0.3"), 1);
     let (t, q) = (column(&trace, "t"), column(&trace, "q"));
     let places = (0_u32..).map(|sample| f64::from(sample) * 0.01);
@@ -113,9 +113,9 @@ fn a_dropped_sample_reaches_nobody() {
     assert!((column(&trace, "kalman.v_hat")[500] - column(&trace, "v")[500]).abs() < 1e-2);
 }
 
-/// Where no sample is dropped, nothing that bridges gaps is seen: the same bits.
+/// Without dropped samples the bridging of gaps changes no bit.
 #[test]
-fn what_is_none_changes_no_bit() {
+fn absent_imperfections_change_no_bit() {
     let quiet = sampled(SPRING, 1).csv();
     for none in ["noise: {q: 0}", "bias: {q: 0}", "quantisation: {q: 0}", "delay: 0", "jitter: 0", "dropped: 0"] {
         assert_eq!(sampled(&spring(none), 1).csv(), quiet, "{none}");
@@ -134,7 +134,7 @@ fn the_same_seed_has_the_same_bits_with_everything_at_once() {
     assert_ne!(first.csv(), run(&text, &short(5)).csv());
 }
 
-/// Samples of the sensor of one output do not depend on what is wrong with the other's.
+/// Samples of one output's sensor do not depend on the imperfections of the other's.
 #[test]
 fn sensors_do_not_disturb_one_another() {
     let noisy = |more: &str| {
@@ -172,7 +172,7 @@ fn faults_are_counted_and_the_run_goes_on() {
 }
 
 #[test]
-fn what_no_sensor_does_is_refused() {
+fn impossible_sensors_are_refused() {
     for (more, code, message) in [
         ("bias: {v: 1}", Code::UnknownEntry, "`v` under `bias` is not an output of y"),
         ("bias: 1", Code::WrongShape, "expected a map from names to numbers"),

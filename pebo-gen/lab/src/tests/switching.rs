@@ -12,7 +12,7 @@ use pebo_design::source::Span;
 use super::flow::course;
 use super::{SPRING, resolve, run, with};
 
-/// What a level is known to: the tolerance of the integrator over some hundred steps.
+/// The accuracy of a level: the tolerance of the integrator over some hundred steps.
 const KNOWN: f64 = 1e-8;
 
 fn sign(arena: &Arena, level: Expr) -> Expr {
@@ -107,8 +107,8 @@ fn a_relay_swings_in_parabolas() {
 
 #[test]
 fn signs_that_change_ever_faster_end_at_rest() {
-    // a'' = -sign(a) - sign(a')/2 from 1: 2 s to zero, 2/3 s to -1/3, and so on from a third: (2 + 2/3)/(1 - sqrt(1/3)) s,
-    // which is 6.31 s, for all of it.
+    // a'' = -sign(a) - sign(a')/2 from 1: 2 s to zero, 2/3 s to -1/3, and so on from a third: (2 + 2/3)/(1 - sqrt(1/3))
+    // s, which is 6.31 s, for all of it.
     let rates = |arena: &Arena, a: &[Expr], _: Expr| {
         let friction = arena.div(sign(arena, a[1]), arena.number(2));
         vec![a[1], arena.neg(arena.add(sign(arena, a[0]), friction))]
@@ -146,7 +146,7 @@ fn a_plant_that_sticks_is_simulated() {
     let trace = run(BRAKE, &Overrides { every: Some(1e-3), ..Overrides::default() });
     let (torque, omega) = (trace.column("M").unwrap(), trace.column("omega").unwrap());
     let held: Vec<usize> = (0..omega.len()).filter(|row| omega[*row].abs() < 1e-9).collect();
-    // It rests for some tenths of a second, and while it does the torque is below what moves it.
+    // It sticks for some tenths of a second, and meanwhile the torque is below the break-away torque.
     assert!(held.len() > 200, "{}", held.len());
     let rests =
         |row: &usize| row + 1 == omega.len() || omega[row + 1].abs() >= 1e-9 || (torque[*row] + 0.5).abs() <= 2.0;
@@ -154,13 +154,13 @@ fn a_plant_that_sticks_is_simulated() {
 }
 
 #[test]
-fn what_runs_away_is_named_with_its_time() {
+fn a_diverging_state_is_named_with_its_time() {
     let text = with(&with(SPRING, "{v: -k*q}", "{v: q^3*k}"), "{v: 0, q: 1}", "{v: 1, q: 1}");
     let scenario = resolve(&text, &Overrides::default()).unwrap();
     let failure = scenario.run().unwrap_err();
     let Failure::Diverged { name, value, at } = &failure else { panic!("{failure}") };
-    // q'' = 4 q^3 from 1 with the speed 1: q'^2 = 2 q^4 - 1, and 1/q is 0 after the integral of 1/sqrt(2 - p^4) over 0..1,
-    // which is 0.76 or so.
+    // q'' = 4 q^3 from 1 with the speed 1: q'^2 = 2 q^4 - 1, and 1/q is 0 after the integral of 1/sqrt(2 - p^4) over
+    // 0..1, which is 0.76 or so.
     assert!(name == "v" && *value > 1e6 && (0.7..0.8).contains(at), "{failure}");
     assert!(scenario.explain(&failure).help.unwrap().contains("unstable"));
 }

@@ -18,7 +18,7 @@ simulation: {duration: 10, step: 0.01, initial: {v: 2, q: 1}}
 ";
 
 #[test]
-fn the_plant_moves_in_time_and_the_observer_is_told_it() {
+fn the_plant_uses_the_time_and_the_observer_measures_it() {
     let trace = run(SHAKEN, &Overrides::default());
     // The time is the first column, and stands there once.
     assert!(trace.csv().starts_with("t,v,q,v_hat,v_error\n"), "{}", &trace.csv()[..40]);
@@ -30,8 +30,8 @@ fn the_plant_moves_in_time_and_the_observer_is_told_it() {
     }
     let score = &trace.summary().estimates[0].score;
     assert!(score.settled.is_some_and(|settled| settled < 0.1), "{}", trace.summary().text());
-    // The force is held over each step at its middle: its second derivative of 12 N/kg/s^2 times dt^2/24, for the time that
-    // the observer remembers, of some tenths of a second, and the outputs joined by straight lines the same.
+    // The force is held over each step at its middle: its second derivative of 12 N/kg/s^2 times dt^2/24, for the time
+    // that the observer remembers, of some tenths of a second, and the outputs joined by straight lines the same.
     assert!(trace.column("v_error").expect("a column").iter().skip(100).all(|error| error.abs() < 1e-3));
 }
 
@@ -50,7 +50,7 @@ fn a_sign_of_time_changes_when_it_does() {
 }
 
 #[test]
-fn baselines_are_told_the_time_too() {
+fn baselines_measure_the_time_too() {
     let text = SHAKEN.replace("initial: {v: 2, q: 1}", "initial: {v: 2, q: 1}, baselines: {kalman: {sensors: {q: 0.001}, \
          start: {v: 5}}, own: {state: {a: 3*sin(2*t) - q + 5*(q - b), b: a + 5*(q - b)}, initial: {b: q}, estimate: {v: a}}}");
     let trace = run(&text, &Overrides::default());

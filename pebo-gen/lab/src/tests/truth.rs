@@ -48,7 +48,7 @@ fn a_parameter_steps_in_the_plant_alone() {
     }
 }
 
-/// A constant among the states that steps, and an output given by its value that a parameter and an input move.
+/// A constant among the states that steps, and an output given by value that a parameter and an input change.
 const LEVEL: &str = "
 model: level
 x: [a, c]
@@ -88,7 +88,7 @@ fn a_constant_state_steps_and_an_output_has_its_value() {
 }
 
 #[test]
-fn what_cannot_be_true_is_refused() {
+fn a_contradictory_truth_is_refused() {
     for (text, code, message) in [
         (spring("noise: {v: 1}"), Code::UnknownEntry, "`v` under `noise` is not an output of y"),
         (spring("noise: {q: -1}"), Code::NumberOutOfRange, "a standard deviation must not be negative"),

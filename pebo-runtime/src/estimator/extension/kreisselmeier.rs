@@ -19,10 +19,10 @@ use crate::{Fault, Real, Turn};
 ///
 /// Method: exact for the regressor held over the step. Each row is divided by its own entry of the diagonal, so the
 /// determinant is that of the correlations: between 0 and 1 (Hadamard's inequality), the same in any units of the
-/// unknowns, and 1 where each unknown is seen by itself, however many there are.
+/// unknowns, and 1 where each unknown is determined by itself, however many there are.
 ///
-/// Units of `gamma_i`: as in [`Gradient`](crate::Gradient); it says at which `Q_ii` there is information enough: well
-/// above `1/gamma_i`.
+/// Units of `gamma_i`: as in [`Gradient`](crate::Gradient); information is enough where `Q_ii` is well above
+/// `1/gamma_i`.
 ///
 /// Source: Kreisselmeier, *Adaptive observers with exponential rate of convergence*, IEEE TAC, 1977; its
 /// use in DREM: Aranovskiy, Ushirobira, Korotina, Vedyakov, *On preserving-excitation properties of Kreisselmeier's

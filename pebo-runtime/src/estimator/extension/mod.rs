@@ -1,4 +1,4 @@
-//! A regression of any shape in, a square one out, that remembers: the first half of DREM.
+//! Regressor extensions: square regressions with memory, made of regressions of any shape; the first half of DREM.
 
 mod kreisselmeier;
 mod response;
@@ -13,8 +13,8 @@ use crate::{Fault, Real, Turn};
 /// A regressor extension: keeps a square regression `vector = matrix * eta` that follows from all data so far.
 ///
 /// The determinant of `matrix` is a measure of excitation: it has no unit and is between 0, before any excitation, and
-/// about 1, where every unknown is seen well by itself. An entry of `matrix` has the unit of its row's unknown over that of its
-/// column's.
+/// about 1, where every unknown is determined well by itself. An entry of `matrix` has the unit of its row's unknown
+/// over that of its column's.
 pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Advances by `dt` seconds, at whose end `regressand = regressor * eta` holds.
     ///
@@ -28,7 +28,7 @@ pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
     /// The known side, in units of `eta`.
     fn vector(&self) -> SVector<S, NE>;
 
-    /// Follows a move of the unknown from `eta` to `eta + shift`.
+    /// Follows a shift of the unknown from `eta` to `eta + shift`.
     fn shift(&mut self, shift: &SVector<S, NE>);
 
     /// Follows a change of the unknown from `eta` to `T eta`, see [`Estimator::turn`](crate::Estimator::turn).
@@ -37,6 +37,6 @@ pub trait RegressorExtension<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Starts again with no memory of the past.
     fn reset(&mut self);
 
-    /// Whether every number of the state is finite.
+    /// True if every number of the state is finite.
     fn is_finite(&self) -> bool;
 }

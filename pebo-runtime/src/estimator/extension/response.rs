@@ -1,4 +1,4 @@
-//! What an estimator has done with its data so far, turned into a regression.
+//! The response of an estimator to its data so far, as a square regression.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -16,15 +16,15 @@ use crate::{Fault, Real, Turn};
 /// (I - F) eta = theta_hat - F theta_hat(0)
 /// ```
 ///
-/// is a square regression, and it keeps what excitation there ever was: without further excitation `F` rests.
+/// is a square regression, and it keeps all past excitation: without further excitation `F` is constant.
 ///
 /// Holds when: the estimator is linear in the regressand and the start ([`Gradient`](crate::Gradient),
 /// [`NormalisedGradient`](crate::NormalisedGradient), [`LeastSquares`](crate::LeastSquares) are; a projected one is
 /// not) and `eta` is constant. `I - F` is regular as soon as the data determine `eta` (interval excitation).
 ///
 /// Method: column `i` of `I - F` is the estimate of the same estimator, started at 0 with the same memory, when the
-/// unknown is the unit vector `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is that
-/// of `NE + 1` estimators.
+/// unknown is the unit vector `i`: no identity is subtracted, so little excitation keeps all its digits. The cost is
+/// that of `NE + 1` estimators.
 ///
 /// Source: Ortega, Romero, Aranovskiy, *A new least squares parameter estimator for nonlinear regression equations with
 /// relaxed excitation conditions and forgetting factor*, Systems & Control Letters, 2022 (least squares; Proposition 1
@@ -65,8 +65,8 @@ where
         let start = estimator.estimate();
         let mut fresh = estimator;
         fresh.reset(&SVector::zeros());
-        // What it has seen so far decides how it takes what is to come: only the estimate goes to 0. The second shift
-        // takes what a sum carries beyond its rounded value.
+        // Its memory decides how it takes later data: only the estimate goes to 0. The second shift takes the error
+        // that a sum carries beyond its rounded value.
         let mut unit = estimator;
         unit.shift(&-start);
         unit.shift(&-unit.estimate());
@@ -111,7 +111,8 @@ where
     fn turn(&mut self, turn: &Turn<S, NE>) {
         self.start.add(&turn.of_unknown(self.start.value()));
         self.estimator.turn(turn);
-        // I - F becomes T (I - F) T^-1: each copy turns, and its estimate is then moved to the column of its unit vector.
+        // I - F becomes T (I - F) T^-1: each copy turns, and its estimate is then moved to the column of its unit
+        // vector.
         let before = self.matrix();
         let turned = before + turn.of_map(&before);
         for (unit, column) in self.units.iter_mut().zip(turned.column_iter()) {

@@ -1,4 +1,4 @@
-//! What every estimator promises: no growth of the error, the unknown in the end, and what each adds to that.
+//! The contract of every estimator: no growth of the error, convergence, and the promises of each.
 
 use pebo_runtime::nalgebra::{Matrix1x3, SMatrix, SVector, Vector1, Vector2, Vector3};
 use pebo_runtime::{
@@ -96,7 +96,7 @@ fn jump<E: Estimator<f64, 1, 3>>(mut estimator: E) -> [f64; 3] {
 }
 
 #[test]
-fn jumps_are_followed_as_told() {
+fn jumps_are_followed_as_documented() {
     // Without forgetting least squares averages before and after: after ten times as long, a tenth of the jump is left.
     let [before, _, late] = jump(least_squares(1e6, 0.0));
     assert!(before < 1e-4 && late > 0.2, "{before} {late}");
@@ -328,9 +328,9 @@ proptest! {
             let now = (estimator.estimate() - truth).abs();
             let share = -(-0.1 * dt).exp_m1();
             seen = seen * (1.0 - share) + (phi.transpose() * phi).diagonal() * (share / 0.1);
-            // In units in which each unknown is seen alike, the determinant and the mixed innovation are sums of products
-            // up to 1 and `size`, rounded; the step is at most 1/Delta of the latter, and never taken where Delta is but
-            // rounding: half of sqrt(gamma dt) at most.
+            // In units with equal data for each unknown, the determinant and the mixed innovation are sums of products
+            // up to 1 and `size`, rounded; the step is at most 1/Delta of the latter, and never taken where Delta is
+            // but rounding: half of sqrt(gamma dt) at most.
             let units = seen.map(|seen| (seen + 1.0 / gain).sqrt());
             let size = units.dot(&(truth.abs() + last));
             let noise = (units.map(|unit| size / unit) + last) * 1e-13 * (1.0 + (speed * dt).sqrt());

@@ -3,14 +3,14 @@
 use pebo_runtime::nalgebra::{SMatrix, SVector, Vector2, Vector3};
 use pebo_runtime::{Drem, Estimator, Kreisselmeier, LeastSquares, Real, RegressorExtension, Response};
 
-/// Regressors that turn, so that all unknowns are seen equally well.
+/// Regressors that turn, so that the data determine all unknowns equally well.
 fn turning<S: Real, const N: usize>(k: u32) -> SMatrix<S, 1, N> {
     let rates = [1.0, 1.7, 2.3, 3.1, 4.3, 5.9];
     SMatrix::from_fn(|_, j| Real::from_f64((0.05 * rates[j] * f64::from(k)).sin()))
 }
 
 #[test]
-fn response_starts_with_what_the_estimator_has_seen() {
+fn response_starts_with_the_data_of_the_estimator() {
     // After a hundred samples least squares hardly moves: the response of an estimator that is still free is another.
     let truth = Vector3::new(1.0, -2.0, 0.5);
     let mut squares = LeastSquares::<f64, 3>::diagonal(&Vector3::new(10.0, 10.0, 10.0), 0.1).unwrap();
@@ -95,7 +95,8 @@ fn equal_gains<const N: usize>(truth: &SVector<f32, N>) {
 #[test]
 fn units_of_the_unknowns_do_not_matter() {
     // A flux of 1 mWb beside a speed of 1000 rad/s, and worse. e^-20 is 2e-9; the Gramian is known to 20000 roundings
-    // of single precision at most, of which the conditioning makes a few percent of the distance left, not of the limit.
+    // of single precision at most, of which the conditioning makes a few percent of the distance left, not of the
+    // limit.
     for left in [left([1e-3, 1e3]), left([1e-6, 1e6])] {
         assert!(left < 1e-3, "{left}");
     }

@@ -7,7 +7,8 @@ use pebo_runtime::{
     RegressionOperator, Response, Sides, WindowedRegression,
 };
 
-/// `Delta` is 1/2 from the first steps on: with the regressor 1, Q settles at 1/forgetting, and the gain times that is 1.
+/// `Delta` is 1/2 from the first steps on: with the regressor 1, Q settles at 1/forgetting, and the gain times that is
+/// 1.
 fn drem(gain: f32) -> Drem<f32, Kreisselmeier<f32, 1>, 1> {
     Drem::new(Kreisselmeier::new(&Vector1::new(1e7), 1e7).unwrap(), &Vector1::new(gain)).unwrap()
 }
@@ -86,7 +87,7 @@ fn a_window_forgets_outliers_to_the_last_bit() {
         let step = window.step([&side(known, factor), &side(known, factor)], dt);
         window.take(step);
     };
-    // What cannot be held beside ordinary numbers in the 48 bits of a sum: values, and times.
+    // Numbers beyond the 48 bits of a sum beside ordinary ones: values, and times.
     for outliers in [[(1e30, 1e20, 1e-3), (1e12, 1e10, 1e-3)], [(1.0, 1.0, 1e30), (1.0, 1.0, 1e10)]] {
         let mut window = WindowedRegression::<f32, 1, 1, 8>::new(Hold::First);
         for (known, factor, dt) in outliers {
@@ -151,7 +152,7 @@ fn no_gain_is_too_large_or_too_small() {
     }
 }
 
-/// An estimator on `NR` equations of `NE` unknowns, whose regressors turn so that all of them are seen.
+/// An estimator on `NR` equations of `NE` unknowns, whose regressors turn so that all unknowns are identifiable.
 fn converges<const NR: usize, const NE: usize>(mut estimator: impl Estimator<f64, NR, NE>) {
     let truth = SVector::<f64, NE>::from_fn(|i, _| [1.0, -2.0, 0.5, 3.0][i % 4]);
     for k in 0..4000_u32 {

@@ -74,7 +74,8 @@ proptest! {
         start in vector::<3>(-10.0..10.0),
         dt in decades(-4, 0),
     ) {
-        // Well conditioned on purpose, so that the explicit inverse is a fair reference: |I + dt Gamma Phi^T Phi| < 2e3.
+        // Well conditioned on purpose, so that the explicit inverse is a fair reference: |I + dt Gamma Phi^T Phi| <
+        // 2e3.
         let gain = Matrix3::identity() + root * root.transpose();
         let mut gradient = Gradient::full(&gain).unwrap().starting_at(&start).unwrap();
         gradient.advance(&regressor, &regressand, dt).unwrap();
@@ -196,14 +197,14 @@ fn gains_must_be_positive() {
     assert_eq!(Gradient::diagonal(&Vector3::new(1.0, 1.0, 1.0)).unwrap().starting_at(&start), Err(Fault::Start));
 }
 
-/// Whether the estimator calls itself finite at an estimate.
+/// True if the estimator calls itself finite at an estimate.
 fn is_finite_at<E: Estimator<f64, 1, 2>>(mut estimator: E, estimate: &Vector2<f64>) -> bool {
     estimator.reset(estimate);
     estimator.is_finite()
 }
 
 #[test]
-fn an_estimate_that_is_no_number_is_told() {
+fn an_estimate_that_is_no_number_is_found() {
     let gradient = Gradient::diagonal(&Vector2::new(1.0, 2.0)).unwrap();
     assert!(is_finite_at(gradient, &Vector2::new(1.0, -2.0)));
     for broken in [f64::NAN, f64::INFINITY] {

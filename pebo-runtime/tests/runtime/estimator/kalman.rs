@@ -246,7 +246,7 @@ fn outputs_with_periods_of_their_own_are_rows_left_out() -> Result<(), Fault> {
     println!("rms of i1 with all samples {all:e}, with a tenth of those of v4 {some:e}");
     // v2 says most of i1: with a tenth of the samples of the other it is still known to a few mA.
     assert!(all < 1e-2 && some < 2e-2, "{all} {some}");
-    // Where nothing is missing a step in parts is a step.
+    // Without missing outputs a partial step is a step.
     let (mut plain, mut same) = (parted()?, parted()?);
     for k in 0..100_u32 {
         let (y, u) = (Vector2::new(10.0 + 0.01 * f64::from(k), -12.0), Vector1::new(0.5));
@@ -284,8 +284,8 @@ fn output_form_of_cuk(process: f64, offset: f64) -> Result<f64, Fault> {
 
 #[test]
 fn measured_outputs_may_drive_the_model() -> Result<(), Fault> {
-    // At 1 A per root second the Kalman filter above has 7.4 mA. An offset of 0.1 V is an error of the model that process
-    // noise of this size mends.
+    // At 1 A per root second the Kalman filter above has 7.4 mA. An offset of 0.1 V is an error of the model that
+    // process noise of this size mends.
     let [plain, offset] = [output_form_of_cuk(1.0, 0.0)?, output_form_of_cuk(1.0, 0.1)?];
     println!("rms {plain:e}, under an offset {offset:e}");
     assert!(plain < 8e-3, "{plain}");

@@ -1,4 +1,4 @@
-//! How fast the estimators have the Cuk converter, case II, without noise, on the data of one closed loop.
+//! The settling times of the estimators on the Cuk converter, case II, without noise, on the data of one closed loop.
 
 use pebo_runtime::nalgebra::{Vector1, Vector2};
 use pebo_runtime::{
@@ -59,7 +59,7 @@ fn a_few_samples_suffice() {
     ];
     for (name, (settled, error), samples) in runs {
         assert!(settled <= samples, "{name} after {settled} samples");
-        // What sampling leaves of 0.5 A and 7.5 V: (2e3/s * 1e-5 s)^2/12 = 3e-5 of each, twice over.
+        // The error of sampling of 0.5 A and 7.5 V: (2e3/s * 1e-5 s)^2/12 = 3e-5 of each, twice over.
         assert!(error.x.abs() < 3e-5 && error.y.abs() < 4e-4, "{name}: {error}");
     }
 }

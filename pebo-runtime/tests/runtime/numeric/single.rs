@@ -2,7 +2,8 @@
 
 use pebo_runtime::Real;
 
-/// Numbers of both signs, evenly over the representations up to `largest`: every magnitude is seen as often.
+/// Numbers of both signs, evenly over the representations up to `largest`: every order of magnitude is equally
+/// frequent.
 fn representations(largest: f32, count: u32) -> impl Iterator<Item = f32> {
     let last = largest.to_bits();
     (0..count).flat_map(move |k| {

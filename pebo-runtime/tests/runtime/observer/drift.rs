@@ -14,7 +14,7 @@ fn running<M: Case<f64>>() -> Loop<f64, M> {
     closed
 }
 
-/// How far apart the estimates are after re-basing one of two equal observers: at once, and during 5 ms after.
+/// The distance of the estimates after re-basing one of two equal observers: at once, and during 5 ms after.
 fn distances<M: Case<f64> + Rebase<2, 2, 1, 2, 2>>(shift: &Vector2<f64>) -> [f64; 2] {
     let (mut plain, mut moved) = (running::<M>(), running::<M>());
     let (theta, chi) = (moved.observer.theta(), *moved.observer.extension());
@@ -35,8 +35,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
     #[test]
     fn estimates_are_those_of_an_observer_never_moved(shift in vector::<2>(-100.0..100.0)) {
-        // At once: a few roundings of numbers up to 100, and of i3 G L3/C4 = 20 V in case II. Later: the innovation is the
-        // difference of numbers 100 times larger, on a filtered regressor of either; the loop feeds it back for 5 ms.
+        // At once: a few roundings of numbers up to 100, and of i3 G L3/C4 = 20 V in case II. Later: the innovation is
+        // the difference of numbers 100 times larger, on a filtered regressor of either; the loop feeds it back for 5
+        // ms.
         for [at_once, later] in [
             distances::<CaseOne<f64>>(&shift), distances::<CaseTwo<f64>>(&shift), distances::<CaseTwoGeneralised<f64>>(&shift),
         ] {
@@ -79,7 +80,7 @@ fn extension_stays_bounded_under_a_bias() {
             if rebase && observer.extension().chi().norm() > 1.0 {
                 let chi = *observer.extension().chi();
                 observer.rebase(&chi).unwrap();
-                // What the sum carries beyond its rounded value stays behind.
+                // The error carried beyond the sum's rounded value is not shifted.
                 assert!(observer.extension().chi().norm() <= f64::EPSILON * chi.norm());
             }
         }
@@ -121,7 +122,7 @@ fn a_leak_takes_its_share_of_each_step() {
 }
 
 #[test]
-fn an_observer_without_drift_steps_as_one_that_is_told_each_time() {
+fn an_observer_without_drift_steps_as_one_that_is_asked_each_time() {
     for form in [Drift::Above(0.3), Drift::Leak(50.0), Drift::Free] {
         let new = || Loop::<f64, CaseOne<f64>>::new(1.0, [0.01, 0.1], 1e-5).unwrap().observer;
         let (mut told, mut built) = (new(), new().without_drift(form).unwrap());

@@ -58,14 +58,15 @@ fn motor_finds_its_position() {
     for k in 0..40_000_u32 {
         now = f64::from(k) * dt;
         let before = (now - dt).max(0.0);
-        // The voltage that moves the flux as told under the trapezoidal rule: the regression then holds without error.
+        // The voltage that moves the flux exactly under the trapezoidal rule: the regression then holds without error.
         let u = (flux(now) - flux(before)) / dt + (current(now) + current(before)) * (R / 2.0);
         estimate = observer.step(current(now), u, dt).unwrap();
     }
     let theta = flux(0.0) - chi_0;
     let eta = Vector3::new(theta.x, theta.y, LAMBDA_M * LAMBDA_M - theta.norm_squared());
-    // The transient has decayed; what is left is the rounding of 40000 steps and, as the filter sees a straight line where
-    // the product of signals is curved, nothing: both sides are interpolated, and eta makes them equal at the samples.
+    // The transient has decayed; what is left is the rounding of 40000 steps and, as the filter sees a straight line
+    // where the product of signals is curved, nothing: both sides are interpolated, and eta makes them equal at the
+    // samples.
     assert!((observer.eta() - eta).norm() < 1e-9, "{}", observer.eta() - eta);
     let turn = (estimate.x - angle(now)) * POLES / core::f64::consts::TAU;
     assert!((turn - turn.round()).abs() < 1e-9, "{turn}");
@@ -137,8 +138,8 @@ fn implicit_errors(dt: f64) -> [f64; 2] {
 #[test]
 fn unknown_may_multiply_the_derivative() {
     let [plain, moved] = implicit_errors(1e-3);
-    // The estimate settles (gain times squared regressor is above 1/s) to what the trapezoidal rule leaves: dt^2/12 times
-    // second derivatives of y up to 30, over regressors of order 1.
+    // The estimate settles (gain times squared regressor is above 1/s) to what the trapezoidal rule leaves: dt^2/12
+    // times second derivatives of y up to 30, over regressors of order 1.
     assert!(plain.abs() < 1e-5, "{plain}");
     // Rounding only: numbers of order 10, twenty moves.
     assert!((plain - moved).abs() < 1e-11, "{plain} {moved}");

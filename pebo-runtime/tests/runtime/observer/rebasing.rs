@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 use crate::random::{decades, matrix, vector};
 
-/// `z' = Lambda z + (u, 0)` with `y' = (1, 1) z`: a pair that turns and dies out or grows, seen through one rate.
+/// `z' = Lambda z + (u, 0)` with `y' = (1, 1) z`: a pair that turns and dies out or grows, measured through one rate.
 #[derive(Clone, Debug)]
 pub(crate) struct Pair<S> {
     lambda: Matrix2<S>,
@@ -136,8 +136,8 @@ fn estimates_are_those_without_rebasing() {
             apart::<f64, _, _>(gradient, window, every, 2000, 5e-3, LAMBDA),
         ];
         for [largest, _] in runs {
-            // Ten seconds, |Psi| < e^2 and its inverse: rounding of numbers up to 10 in 2000 steps, with gains of 1e3 while the
-            // second direction is not seen yet.
+            // Ten seconds, |Psi| < e^2 and its inverse: rounding of numbers up to 10 in 2000 steps, with gains of 1e3
+            // while the second direction is not excited yet.
             assert!(largest < 1e-9, "{largest:e}");
         }
     }
@@ -161,8 +161,8 @@ fn rounding_does_not_add_up() {
         let double = both_apart::<f64>(every, steps, dt, still);
         let single = both_apart::<f32>(every, steps, dt, still);
         println!("every {every}, {steps} steps: f64 {double:?}, f32 {single:?}");
-        // Least squares settles and the gradient forgets: what is left is the rounding of numbers up to 5 and what gains
-        // make of it at the start.
+        // Least squares settles and the gradient forgets: what is left is the rounding of numbers up to 5 and what
+        // gains make of it at the start.
         assert!(double.iter().all(|[largest, _]| *largest < 1e-13), "{double:?}");
         assert!(single.iter().all(|[largest, _]| *largest < 1e-4), "{single:?}");
     }
@@ -204,7 +204,7 @@ fn a_growing_plant_is_followed_without_a_fault() {
     assert_eq!(fault, Some(Fault::State));
 }
 
-/// The error of the estimate 5 s after an input that nobody was told of stepped by 1.
+/// The error of the estimate 5 s after an unmeasured input stepped by 1.
 fn after_a_step(observer: PairObserver<f64, LeastSquares<f64, 2>, FilteredRegression<f64, 1, 2>>) -> f64 {
     let mut observer = observer;
     let lambda = [-4.0, 1.0, 0.0, -2.0];
@@ -237,7 +237,7 @@ fn a_matrix_that_dies_out_is_no_open_loop() {
 }
 
 #[test]
-fn weights_of_what_dies_out_stay_finite() {
+fn weights_of_a_dying_component_remain_finite() {
     // Without process noise P dies out with Psi: in f32 its inverse would overflow after 44 time constants.
     let squares = LeastSquares::<f32, 2>::diagonal(&pair(1.0, 1.0), 0.0).unwrap();
     let mut observer: PairObserver<f32, _, _> =
@@ -295,7 +295,7 @@ fn turn() -> impl Strategy<Value = (Turn<f64, 3>, Matrix3<f64>)> {
     })
 }
 
-/// Two runs, one with a turn of the unknown in the middle: the same estimate, told in its coordinates.
+/// Two runs, one with a turn of the unknown in the middle: the same estimate, in its coordinates.
 fn turns<E: Estimator<f64, 2, 3>>(
     estimator: E,
     phis: &[SMatrix<f64, 2, 3>],

@@ -82,7 +82,7 @@ proptest! {
 
 #[test]
 fn window_gives_the_state_at_once_and_forgets_completely() {
-    // A wrong start of chi is known after the first interval; after a kick that no one told, when the window is past
+    // A wrong start of chi is known after the first interval; after an unmeasured kick, when the window is past
     // it.
     let window = WindowedRegression::<f64, 1, 1, 10>::new(Hold::First);
     let gradient = Gradient::diagonal(&Vector1::new(1e9)).unwrap();
@@ -95,7 +95,7 @@ fn window_gives_the_state_at_once_and_forgets_completely() {
         if k == 30 {
             x += 5.0;
         }
-        // The input told at the next call is the one of the interval to come.
+        // The input of the next call is that of the coming interval.
         let next = f64::from(k + 1).sin();
         y += x * 0.1 + next * 0.005;
         x += next * 0.1;
@@ -109,7 +109,7 @@ fn window_gives_the_state_at_once_and_forgets_completely() {
 
 #[test]
 fn straight_inputs_need_the_first_order_hold() {
-    // x' = t: told both ends of the interval the observer is exact, told the end alone it is late.
+    // x' = t: with both ends of the interval the observer is exact, with the end alone it is late.
     let new = || Observer::new(mass(), squares(0.0), filter(), Vector1::zeros()).unwrap();
     let (mut straight, mut held) = (new(), new());
     for k in 0..100_u32 {

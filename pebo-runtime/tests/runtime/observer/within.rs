@@ -33,7 +33,7 @@ fn a_state_within_its_bounds_is_never_further_away() {
             assert!((bounds.0[i]..=bounds.1[i]).contains(&one[i]));
         }
         cut += u32::from(one != other);
-        // What is estimated knows nothing of it.
+        // The estimate of the unknown knows nothing of it.
         assert_eq!(bounded.theta(), plain.theta());
     }
     assert!(cut > 10, "{cut}");

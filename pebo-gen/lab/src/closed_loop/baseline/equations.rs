@@ -1,4 +1,4 @@
-//! Baselines that are given by their equations: one ODE together with the plant.
+//! Baselines given by equations: one ODE combined with the plant.
 
 use pebo_cas::Expr;
 use pebo_design::model::{Entry, Equations, Formula};
@@ -9,7 +9,7 @@ use crate::closed_loop::scope::{Estimates, Names, Sight, View};
 
 /// The equations of a baseline, resolved.
 #[derive(Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct ResolvedEquations {
     /// The rates of its states.
     pub(super) rates: Vec<Expr>,
     /// Its states at the start, in outputs.
@@ -19,16 +19,20 @@ pub(super) struct Motion {
 }
 
 /// Resolves a baseline of this name.
-pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), problems: &mut Diagnostics) -> Motion {
+pub(super) fn resolve(
+    names: &Names,
+    (name, baseline): (&str, &Equations),
+    problems: &mut Diagnostics,
+) -> ResolvedEquations {
     let arena = &names.plant.arena;
-    let seen = View { sight: Sight::Inputs, own: Some((name, baseline)), ..View::default() };
+    let view = View { sight: Sight::Inputs, own: Some((name, baseline)), ..View::default() };
 
-    let scope = names.scope(&seen);
+    let scope = names.scope(&view);
     let estimates: Estimates = (baseline.estimate.iter())
         .filter_map(|e| Some((e.name.value.clone(), problems.keep(lower(arena, &scope, &e.value))?)))
         .collect();
 
-    let scope = names.scope(&View { hats: estimates.clone(), ..seen });
+    let scope = names.scope(&View { hats: estimates.clone(), ..view });
     let rates = (baseline.state.iter()).filter_map(|e| problems.keep(lower(arena, &scope, &e.value))).collect();
 
     let scope = names.scope(&View { sight: Sight::Outputs, ..View::default() });
@@ -37,5 +41,5 @@ pub(super) fn resolve(names: &Names, (name, baseline): (&str, &Equations), probl
         written.map_or(Some(arena.zero()), |entry| problems.keep(lower(arena, &scope, &entry.value)))
     };
     let start = baseline.state.iter().filter_map(&mut begin).collect();
-    Motion { rates, start, estimates }
+    ResolvedEquations { rates, start, estimates }
 }

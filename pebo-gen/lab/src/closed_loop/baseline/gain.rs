@@ -1,11 +1,11 @@
-//! How a baseline corrects its prediction: Kalman's gain and Luenberger's.
+//! The gains that correct a baseline's prediction: Kalman's and Luenberger's.
 //!
-//! In: what a step did, and the derivatives of the outputs. Out: the correction of the states. Sizes are padded with zeros,
-//! in which neither moves anything.
+//! In: the transition of a step, and the derivatives of the outputs. Out: the correction of the states. Sizes are
+//! padded with zeros, which neither changes.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-use super::linearised::Step;
+use super::linearised::Transition;
 
 /// The outputs of a sample.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Sample<const N: usize> {
     pub(super) slopes: SMatrix<f64, N, N>,
 }
 
-/// A rule by which predictions are corrected.
+/// A rule that corrects predictions.
 #[derive(Clone, Debug)]
 pub(super) enum Gain<const N: usize> {
     Kalman(Kalman<N>),
@@ -25,7 +25,7 @@ pub(super) enum Gain<const N: usize> {
 
 impl<const N: usize> Gain<N> {
     /// Follows the states over a step of `dt` seconds.
-    pub(super) fn predict(&mut self, step: &Step<N>, dt: f64) {
+    pub(super) fn predict(&mut self, step: &Transition<N>, dt: f64) {
         match self {
             Self::Kalman(filter) => filter.predict(step, dt),
             Self::Luenberger(_) => {}
@@ -33,7 +33,7 @@ impl<const N: usize> Gain<N> {
     }
 
     /// The correction of the states by a sample at the end of a step; nothing where there is none.
-    pub(super) fn correct(&mut self, step: &Step<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+    pub(super) fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
         match self {
             Self::Kalman(filter) => Some(filter.correct(sample)),
             Self::Luenberger(observer) => observer.correct(step, sample),
@@ -46,20 +46,20 @@ impl<const N: usize> Gain<N> {
 pub(super) struct Kalman<const N: usize> {
     /// Of the states' errors.
     pub(super) covariance: SMatrix<f64, N, N>,
-    /// By how much a variance grows in a second.
+    /// The growth of each variance in a second.
     pub(super) intensity: SVector<f64, N>,
     /// The variances of the outputs' samples.
     pub(super) sensors: Vec<f64>,
 }
 
-/// The covariance after a motion.
-fn carried<const N: usize>(motion: &SMatrix<f64, N, N>, covariance: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    motion * covariance * motion.transpose()
+/// The covariance after a transition.
+fn carried<const N: usize>(transition: &SMatrix<f64, N, N>, covariance: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    transition * covariance * transition.transpose()
 }
 
 impl<const N: usize> Kalman<N> {
     /// Method: the integral of the disturbance by Simpson's rule, of fourth order in the step and never indefinite.
-    fn predict(&mut self, step: &Step<N>, dt: f64) {
+    fn predict(&mut self, step: &Transition<N>, dt: f64) {
         let intensity = SMatrix::from_diagonal(&self.intensity);
         let disturbed = intensity + carried(&step.half, intensity * 4.0) + carried(&step.whole, intensity);
         self.covariance = carried(&step.whole, self.covariance) + disturbed * (dt / 6.0);
@@ -87,13 +87,13 @@ pub(super) struct Luenberger<const N: usize> {
     pub(super) poles: Vec<f64>,
     /// The number of outputs.
     pub(super) outputs: usize,
-    /// The last motion and outputs with the gain that belongs to them: where the inputs rest it is worked out once.
+    /// The last transition and output slopes with their gain: with constant inputs it is computed once.
     pub(super) known: Option<(SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>)>,
 }
 
 impl<const N: usize> Luenberger<N> {
-    fn correct(&mut self, step: &Step<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
-        let known = self.known.filter(|(motion, slopes, _)| (motion, slopes) == (&step.whole, &sample.slopes));
+    fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+        let known = self.known.filter(|(transition, slopes, _)| (transition, slopes) == (&step.whole, &sample.slopes));
         let gain = match known {
             Some((.., gain)) => gain,
             None => self.gain(&step.whole, &(sample.slopes * step.whole))?,
@@ -102,18 +102,19 @@ impl<const N: usize> Luenberger<N> {
         Some(gain * sample.innovation)
     }
 
-    /// The gain `L` with which `motion - L seen` has the poles.
+    /// The gain `L` for which `A - L C` has the poles, `A` the transition and `C` the output slopes.
     ///
-    /// Method: rows `x_i (motion - f_i) = g_i seen` with any `g_i` make `X motion - F X = G seen`, so that with
-    /// `L = X^-1 G` the matrix `motion - L seen = X^-1 F X` has the poles `F`. Source: Luenberger, *Observing the state of a
-    /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that outputs of
-    /// unequal units are not mixed: `X` has an inverse where each output shows the states that its poles are for.
-    fn gain(&self, motion: &SMatrix<f64, N, N>, seen: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
+    /// Method: rows `x_i (A - f_i) = g_i C` with any `g_i` make `X A - F X = G C`, so that with `L = X^-1 G` the matrix
+    /// `A - L C = X^-1 F X` has the poles `F`. Source: Luenberger, *Observing the state of a
+    /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that
+    /// outputs of unequal units are not mixed: `X` has an inverse where the states of its poles are observable from
+    /// each output.
+    fn gain(&self, transition: &SMatrix<f64, N, N>, output_slopes: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
         let (mut rows, mut mixing) = (SMatrix::<f64, N, N>::identity(), SMatrix::<f64, N, N>::zeros());
         for (row, pole) in self.poles.iter().enumerate() {
             mixing[(row, row % self.outputs)] = 1.0;
-            let shifted = motion - SMatrix::identity() * *pole;
-            let right = seen.transpose() * mixing.row(row).transpose();
+            let shifted = transition - SMatrix::identity() * *pole;
+            let right = output_slopes.transpose() * mixing.row(row).transpose();
             rows.set_row(row, &(shifted.transpose().try_inverse()? * right).transpose());
         }
         Some(rows.try_inverse()? * mixing)

@@ -1,16 +1,16 @@
-//! The plant as its model says it is, linearised: what observers by name are built of.
+//! The linearised plant of the model, for baselines by name.
 //!
-//! In: the plant. Out: programs of the rates and of the outputs, each with its derivatives by the states. The states are
-//! those of x and the outputs that have rates; outputs that are given by their value are measured functions of them.
+//! In: the plant. Out: programs of the rates and of the outputs, each with its derivatives by the states. The states
+//! are those of x and the outputs that have rates; outputs given by value are measured functions of them.
 
 use std::collections::BTreeSet;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Extension as _, Fault, Flow, Fundamental};
 
-use crate::closed_loop::layout::program;
 use crate::closed_loop::scope::Names;
 use crate::closed_loop::truth::Truth;
+use crate::observe::design::program;
 use crate::observe::sizes::LARGEST;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Expr, Symbol};
@@ -19,15 +19,15 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// The programs of a plant in states and inputs.
 #[derive(Debug)]
-pub(super) struct Linearised {
+pub(super) struct LinearisedPlant {
     /// The states of x, then outputs that have rates.
     pub(super) states: Vec<Symbol>,
     /// The number of outputs.
     pub(super) outputs: usize,
-    /// For each output the place of the state that it is, if it has a rate.
+    /// The index of each output among the states, if it has a rate.
     pub(super) places: Vec<Option<usize>>,
     inputs: usize,
-    /// Whether no derivative depends on a state, which is proved.
+    /// True if no derivative depends on a state, which is proved.
     pub(super) is_affine: bool,
     /// The rates, then their derivatives by rows.
     rates: Program,
@@ -35,8 +35,8 @@ pub(super) struct Linearised {
     values: Program,
 }
 
-impl Linearised {
-    /// The programs; `span` is where they are asked for.
+impl LinearisedPlant {
+    /// The programs; `span` is that of the baseline.
     pub(super) fn resolve(names: &Names, (name, span): (&str, Span), problems: &mut Diagnostics) -> Option<Self> {
         let (plant, arena) = (names.plant, &names.plant.arena);
         let model = Truth::of_model(names)?;
@@ -96,7 +96,7 @@ impl Linearised {
 
 /// The programs, with room for their values, padded to N.
 #[derive(Debug)]
-pub(super) struct Padded<const N: usize> {
+pub(super) struct PaddedPlant<const N: usize> {
     states: usize,
     outputs: usize,
     inputs: usize,
@@ -106,19 +106,19 @@ pub(super) struct Padded<const N: usize> {
     found: Vec<f64>,
 }
 
-/// What a step does to states and their errors.
+/// The transition of states and their errors over a step.
 #[derive(Clone, Debug)]
-pub(super) struct Step<const N: usize> {
+pub(super) struct Transition<const N: usize> {
     /// The states at its end.
     pub(super) state: SVector<f64, N>,
     /// The derivative of the states in the middle of the step by those at its start.
     pub(super) half: SMatrix<f64, N, N>,
-    /// Of those at its end.
+    /// The derivative of the states at its end by those at its start.
     pub(super) whole: SMatrix<f64, N, N>,
 }
 
-impl<const N: usize> Padded<N> {
-    pub(super) fn new(plant: &Linearised) -> Self {
+impl<const N: usize> PaddedPlant<N> {
+    pub(super) fn new(plant: &LinearisedPlant) -> Self {
         let most = plant.rates.outputs.len().max(plant.values.outputs.len());
         Self {
             states: plant.states.len(),
@@ -131,20 +131,20 @@ impl<const N: usize> Padded<N> {
         }
     }
 
-    /// Moves the states on by `dt` seconds with the inputs held: exact for an affine plant, and of second order for others
-    /// (the exponential Euler method of Rosenbrock's kind: Hochbruck and Ostermann, *Exponential integrators*, Acta
-    /// Numerica, 2010).
+    /// Advances the states by `dt` seconds with the inputs held: exact for an affine plant, and of second order for
+    /// others (the exponential Euler method of Rosenbrock's kind: Hochbruck and Ostermann, *Exponential integrators*,
+    /// Acta Numerica, 2010).
     ///
     /// # Errors
     /// A step that is too long for an exponential.
-    pub(super) fn advance(&mut self, state: &SVector<f64, N>, u: &[f64], dt: f64) -> Result<Step<N>, Fault> {
+    pub(super) fn advance(&mut self, state: &SVector<f64, N>, u: &[f64], dt: f64) -> Result<Transition<N>, Fault> {
         let (h, lambda) = self.at(state, u, true);
         let flow = Flow { lambda, h };
         let mut motion = Fundamental::<f64, N>::new(SVector::zeros());
         motion.advance(&flow, &flow, dt / 2.0)?;
         let half = *motion.psi();
         motion.advance(&flow, &flow, dt / 2.0)?;
-        Ok(Step { state: state + motion.xi(), half, whole: *motion.psi() })
+        Ok(Transition { state: state + motion.xi(), half, whole: *motion.psi() })
     }
 
     /// The outputs, and their derivatives by the states.

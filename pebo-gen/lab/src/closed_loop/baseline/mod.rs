@@ -1,8 +1,8 @@
-//! Baseline observers: the ones that the model's own is compared with.
+//! Baseline observers, with which the model's own is compared.
 //!
-//! In: what the model file says of them. Out: of one that is given by equations, rates, starts and estimates as
-//! expressions of the layout's symbols; of one that is given by its name, a [`Sampled`] observer that is fed the samples
-//! which the model's own gets. Either sees what an observer sees: outputs, inputs, signals, its own states.
+//! In: the entries of the model file. Out: for one given by equations, rates, starts and estimates as expressions of
+//! the layout's symbols; for one given by name, a [`NamedBaseline`] that takes the samples of the model's own observer.
+//! Either uses what an observer may: outputs, inputs, signals, its own states.
 //!
 //! ```text
 //! equations -> expressions                 kalman, ekf, luenberger -> linearised plant -> gain -> estimate
@@ -17,37 +17,40 @@ use pebo_cas::Expr;
 use pebo_design::model::{Baseline, Entry};
 use pebo_design::source::Diagnostics;
 
-use super::layout::rival_estimates;
+use super::layout::baseline_estimates;
 use super::scope::{Estimates, Names};
-use equations::Motion;
+use equations::ResolvedEquations;
 
-pub(crate) use sampled::{Follower, Sampled};
+pub(crate) use sampled::{Follower, NamedBaseline};
 
 /// A baseline, resolved.
 #[derive(Debug)]
-pub(crate) struct Rival {
+pub(crate) struct ResolvedBaseline {
     /// Its name.
     pub(crate) name: String,
     /// The rates of its states, if it has equations.
     pub(crate) rates: Vec<Expr>,
     /// Its states at the start, in outputs.
     pub(crate) start: Vec<Expr>,
-    /// Its estimates, in its states, outputs and inputs; of a sampled one, those that it writes.
+    /// Its estimates, in its states, outputs and inputs; for one by name, the symbols that it writes.
     pub(crate) estimates: Estimates,
-    /// What writes them, if it has no equations.
-    pub(crate) sampled: Option<Sampled>,
+    /// The observer that writes them, if it has no equations.
+    pub(crate) sampled: Option<NamedBaseline>,
 }
 
-impl Rival {
-    /// Resolves a baseline; what is wrong with it is reported.
+impl ResolvedBaseline {
+    /// Resolves a baseline; mistakes are reported.
     pub(crate) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
         let name = entry.name.value.as_str();
-        let (Motion { rates, start, estimates }, sampled) = match &entry.value {
+        let (ResolvedEquations { rates, start, estimates }, sampled) = match &entry.value {
             Baseline::Equations(written) => (equations::resolve(names, (name, written), problems), None),
             Baseline::Kalman(_) | Baseline::Luenberger(_) => {
-                let estimates = rival_estimates(names.plant, entry).into_iter();
+                let estimates = baseline_estimates(names.plant, entry).into_iter();
                 let estimates = estimates.map(|(state, symbol)| (state, names.plant.arena.of_symbol(symbol))).collect();
-                (Motion { estimates, ..Motion::default() }, Some(Sampled::resolve(names, entry, problems)?))
+                (
+                    ResolvedEquations { estimates, ..ResolvedEquations::default() },
+                    Some(NamedBaseline::resolve(names, entry, problems)?),
+                )
             }
         };
         Some(Self { name: name.to_owned(), rates, start, estimates, sampled })

@@ -1,15 +1,15 @@
-//! Baselines that are given by their name: observers of all states, fed sample by sample.
+//! Baselines given by name: observers of all states that take samples.
 //!
-//! In: the plant's model and the settings of the baseline. Out: a [`Sampled`] description, and of it a [`Follower`] that takes
-//! what the model's own observer takes, and writes an estimate of each unmeasured state.
+//! In: the plant's model and the settings of the baseline. Out: a [`NamedBaseline`], which builds a [`Follower`] that
+//! takes the samples of the model's own observer and writes an estimate of each unmeasured state.
 
 use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-use crate::closed_loop::layout::program;
 use crate::closed_loop::scope::{Names, Sight, View};
 use crate::closed_loop::sensor;
+use crate::observe::design::program;
 use crate::observe::sizes::{LARGEST, pad};
 use pebo_cas::Expr;
 use pebo_design::model::{Baseline, Decimal, Entry, Kalman, Luenberger, Spanned};
@@ -18,13 +18,13 @@ use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::gain::{self, Gain, Sample};
-use super::linearised::{Linearised, Padded};
+use super::linearised::{LinearisedPlant, PaddedPlant};
 
 /// An observer by name, ready to be built.
 #[derive(Debug)]
-pub(crate) struct Sampled {
-    plant: Linearised,
-    /// From the outputs to the estimates of x at the start.
+pub(crate) struct NamedBaseline {
+    plant: LinearisedPlant,
+    /// The estimates of x at the start, from the outputs.
     start: Program,
     rule: Rule,
 }
@@ -37,11 +37,11 @@ enum Rule {
     Luenberger(Vec<f64>),
 }
 
-impl Sampled {
-    /// Resolves a baseline that has no equations; what is wrong with it is reported.
+impl NamedBaseline {
+    /// Resolves a baseline that has no equations; mistakes are reported.
     pub(super) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
         let place = (entry.name.value.as_str(), entry.name.span);
-        let plant = Linearised::resolve(names, place, problems)?;
+        let plant = LinearisedPlant::resolve(names, place, problems)?;
         let (rule, initial) = match &entry.value {
             Baseline::Equations(_) => return None,
             Baseline::Kalman(written) => (kalman(names, written, &plant, place, problems)?, &written.initial),
@@ -57,10 +57,11 @@ impl Sampled {
                 None => arena.zero(),
             });
         }
-        // What the outputs show is what is passed.
-        let shown = names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
-        let shown = shown.collect();
-        let start: Vec<Expr> = start.into_iter().map(|formula| arena.replace(formula, &shown)).collect();
+        // The outputs are passed as arguments.
+        let measured =
+            names.plant.y.iter().map(|output| (names.measured(output.symbol), arena.of_symbol(output.symbol)));
+        let measured = measured.collect();
+        let start: Vec<Expr> = start.into_iter().map(|formula| arena.replace(formula, &measured)).collect();
         let outputs: Vec<_> = names.plant.y.iter().map(|output| output.symbol).collect();
         let start = problems.keep(program(arena, &outputs, &start, entry.name.span))?;
         Some(Self { plant, start, rule })
@@ -69,14 +70,14 @@ impl Sampled {
     /// The observer at its first sample, where the states are truly `x`.
     pub(crate) fn follower(&self, x: &[f64], y: &[f64], dt: f64) -> Box<dyn Follower> {
         match self.plant.states.len().max(self.plant.outputs) {
-            0..=4 => Box::new(Following::<4>::new(self, x, y, dt)),
-            5..=8 => Box::new(Following::<8>::new(self, x, y, dt)),
-            _ => Box::new(Following::<LARGEST>::new(self, x, y, dt)),
+            0..=4 => Box::new(PaddedFollower::<4>::new(self, x, y, dt)),
+            5..=8 => Box::new(PaddedFollower::<8>::new(self, x, y, dt)),
+            _ => Box::new(PaddedFollower::<LARGEST>::new(self, x, y, dt)),
         }
     }
 }
 
-/// The number that an entry has for a name.
+/// The number of a name among the entries.
 fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
     entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
 }
@@ -84,7 +85,7 @@ fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
 fn kalman(
     names: &Names,
     written: &Kalman,
-    plant: &Linearised,
+    plant: &LinearisedPlant,
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -119,7 +120,7 @@ fn kalman(
 
 fn luenberger(
     written: &Luenberger,
-    plant: &Linearised,
+    plant: &LinearisedPlant,
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -135,7 +136,7 @@ fn luenberger(
     None
 }
 
-/// An observer of some size at work.
+/// A running observer of any size.
 pub(crate) trait Follower: fmt::Debug {
     /// Takes the inputs during a step, and the outputs at its end if their sample arrived.
     fn sample(&mut self, y: Option<&[f64]>, u: &[f64]);
@@ -145,15 +146,15 @@ pub(crate) trait Follower: fmt::Debug {
 }
 
 #[derive(Debug)]
-struct Following<const N: usize> {
-    plant: Padded<N>,
+struct PaddedFollower<const N: usize> {
+    plant: PaddedPlant<N>,
     gain: Gain<N>,
     state: SVector<f64, N>,
     dt: f64,
 }
 
-impl<const N: usize> Following<N> {
-    fn new(sampled: &Sampled, x: &[f64], y: &[f64], dt: f64) -> Self {
+impl<const N: usize> PaddedFollower<N> {
+    fn new(sampled: &NamedBaseline, x: &[f64], y: &[f64], dt: f64) -> Self {
         let mut start = vec![0.0; x.len()];
         Interpreter::new(&sampled.start).run(y, &mut start);
         let mut state = pad::<N>(&start);
@@ -185,11 +186,11 @@ impl<const N: usize> Following<N> {
                 })
             }
         };
-        Self { plant: Padded::new(&sampled.plant), gain, state, dt }
+        Self { plant: PaddedPlant::new(&sampled.plant), gain, state, dt }
     }
 }
 
-impl<const N: usize> Follower for Following<N> {
+impl<const N: usize> Follower for PaddedFollower<N> {
     fn sample(&mut self, y: Option<&[f64]>, u: &[f64]) {
         let Ok(step) = self.plant.advance(&self.state, u, self.dt) else {
             self.state.fill(f64::NAN);
@@ -202,7 +203,7 @@ impl<const N: usize> Follower for Following<N> {
         let mut sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
         for output in (0..y.len()).filter(|output| y[*output].is_nan()) {
             sample.innovation[output] = 0.0;
-            // Of an output that is not there a covariance learns nothing; poles are those of all outputs.
+            // A covariance learns nothing from a missing output; poles are those of all outputs.
             if matches!(self.gain, Gain::Kalman(_)) {
                 sample.slopes.row_mut(output).fill(0.0);
             }

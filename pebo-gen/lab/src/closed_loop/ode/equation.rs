@@ -1,6 +1,7 @@
-//! The differential equation of a run, as the methods that integrate it see it.
+//! The differential equation of a run, for the methods that integrate it.
 //!
-//! In: programs of rates and their derivatives, with the table that they read. Out: their values at an instant and a state.
+//! In: programs of rates and their derivatives, with the table that they read. Out: their values at an instant and a
+//! state.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -11,33 +12,33 @@ use pebo_runtime::nalgebra::{SMatrix, SVector};
 
 use pebo_design::program::Interpreter;
 
-use super::switching::Switching;
+use super::switching::SwitchState;
 use crate::closed_loop::layout::TIME;
-use crate::closed_loop::signal::Course;
+use crate::closed_loop::signal::SignalCursor;
 
-/// Errors of estimates are looked at down to a millionth; the truth has to be much better than that.
+/// The relative tolerance. Errors of estimates matter down to a millionth; the truth has to be much better than that.
 pub(crate) const RELATIVE: f64 = 1e-10;
 
-/// For states that pass through zero: far below any value of interest in SI units.
+/// The absolute tolerance, for states that pass through zero: far below any value of interest in SI units.
 pub(crate) const ABSOLUTE: f64 = 1e-12;
 
-/// A rate this small is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square
-/// of a step's error, which for a rate that fades away becomes too small to be divided by.
+/// A smaller rate is zero: over years it moves nothing by as much as [`ABSOLUTE`]. The library divides by the square of
+/// a step's error, which underflows for a rate that fades away.
 const STILL: f64 = 1e-100;
 
-/// A step that is this small a part of the interval will not get anywhere.
+/// The shortest step that still makes progress, as a share of the interval.
 pub(crate) const SHORTEST: f64 = 1e-12;
 
-/// The integration came to a stand.
+/// A standstill of the integration.
 #[derive(Clone, Debug)]
-pub(crate) struct Stuck {
+pub(crate) struct Standstill {
     /// The steps that it took.
     pub(crate) steps: u64,
-    /// When, in seconds.
+    /// The time, in seconds.
     pub(crate) at: f64,
-    /// The last state that it came to.
+    /// The last state.
     pub(crate) state: Vec<f64>,
-    /// Where it got on, but too slowly for the run: the place of the state that moves fastest, and its rate in 1/s.
+    /// If it advanced, but too slowly for the run: the index of the fastest state, and its rate in 1/s.
     pub(crate) fast: Option<(usize, f64)>,
 }
 
@@ -50,17 +51,17 @@ pub(crate) struct Equation(pub(crate) RefCell<Rates>);
 pub(crate) struct Rates {
     pub(crate) table: Vec<f64>,
     pub(crate) state: Range<usize>,
-    /// Where the integration began.
+    /// The time at which the integration began.
     pub(crate) origin: f64,
     /// Signals that the rates depend on, with their positions in the table.
-    pub(crate) signals: Vec<(usize, Course)>,
+    pub(crate) signals: Vec<(usize, SignalCursor)>,
     pub(crate) formulas: Interpreter,
     /// The derivatives of the formulas by the state, by rows.
     pub(crate) slopes: Option<Interpreter>,
-    /// Whether the rates depend on more than the state.
+    /// True if the rates depend on more than the state.
     pub(crate) moves: bool,
-    pub(crate) switching: Option<Switching>,
-    /// How far to either side of an instant signals are looked at for their rates, in seconds.
+    pub(crate) switching: Option<SwitchState>,
+    /// The distance of the difference quotient for the signals' rates, to either side, in seconds.
     pub(crate) aside: f64,
 }
 
@@ -88,14 +89,14 @@ impl Rates {
         }
     }
 
-    /// Which component of the state moves fastest where the integration was last, and its rate in 1/s, whatever the units.
+    /// The fastest component of the state where the integration was last, and its rate in 1/s, in any units.
     pub(crate) fn fastest(&mut self, state: &[f64]) -> Option<(usize, f64)> {
         let (slopes, table, place) = (self.slopes.as_mut()?, &self.table, &self.state);
         let of =
             |position: usize| if place.contains(&position) { state[position - place.start] } else { table[position] };
         let slopes: Vec<f64> = slopes.evaluate(of).collect();
         let count = state.len();
-        // By itself, or together with another, back and forth.
+        // By itself, or combined with another, back and forth.
         let rate = |row: usize| {
             (0..count)
                 .map(|other| (slopes[row * count + other] * slopes[other * count + row]).abs().sqrt())
@@ -104,7 +105,7 @@ impl Rates {
         (0..count).map(|row| (row, rate(row))).max_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Before an integration from this instant.
+    /// Prepares an integration from this instant.
     pub(crate) fn begin(&mut self, origin: f64, state: &[f64], reached: &[bool]) {
         self.origin = origin;
         self.place(0.0, state);
@@ -113,28 +114,28 @@ impl Rates {
         }
     }
 
-    /// Which switches can no longer do what they do.
+    /// The switches whose mode has ended.
     pub(crate) fn reached(&mut self, t: f64, state: &[f64]) -> Option<Vec<bool>> {
         self.place(t, state);
         self.switching.as_mut()?.reached(&mut self.table)
     }
 }
 
-/// Told of each step's end, in seconds since the start, with the state there; whether to end there.
-pub(crate) type Watch<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
+/// Called at each step's end, with the seconds since the start and the state; true ends the integration.
+pub(crate) type StepCallback<'a> = dyn FnMut(f64, &[f64]) -> bool + 'a;
 
-/// What moves a state on.
-pub(crate) trait Solve: fmt::Debug {
-    /// Moves the state on by `length` seconds in at most so many steps, or to where it is watched to end; gives the number of
-    /// steps.
+/// A method that integrates a state.
+pub(crate) trait Solver: fmt::Debug {
+    /// Advances the state by `length` seconds in at most this number of steps, or until the callback ends it; returns
+    /// the number of steps.
     fn solve(
         &mut self,
         rates: &Equation,
         state: &mut [f64],
         length: f64,
         most: u64,
-        watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck>;
+        watch: Option<&mut StepCallback<'_>>,
+    ) -> Result<u64, Standstill>;
 }
 
 impl<const N: usize> ODE<f64, [f64; N]> for Equation {
@@ -159,12 +160,12 @@ impl<const N: usize> ODE<f64, [f64; N]> for Equation {
 }
 
 impl Equation {
-    /// The instant from which the integration counts.
+    /// The instant at which the integration's time is zero.
     pub(crate) fn origin(&self) -> f64 {
         self.0.borrow().origin
     }
 
-    /// Whether the rates depend on more than the state.
+    /// True if the rates depend on more than the state.
     pub(crate) fn moves(&self) -> bool {
         self.0.borrow().moves
     }
@@ -176,7 +177,7 @@ impl Equation {
         rates.into()
     }
 
-    /// The derivatives of the rates by the state; of what is beyond the state, none.
+    /// The derivatives of the rates by the state; zero for the padding.
     pub(crate) fn slopes<const N: usize>(&self, t: f64, state: &SVector<f64, N>) -> SMatrix<f64, N, N> {
         let mut inner = self.0.borrow_mut();
         inner.follow(t);

@@ -1,8 +1,8 @@
-//! The plant, and the baselines that have equations, between two samples: one ordinary differential equation.
+//! Integrates the plant and the baselines with equations between two samples, as one ordinary differential equation.
 //!
-//! It is started anew at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a sign
-//! in the rates changes (`switching`), which is found by halving the step in which it does. The method is explicit; from an
-//! interval on that needs very many steps, the one for stiff plants (`stiff`) is taken if it needs fewer.
+//! It is started anew at each sample, where the inputs jump, where a signal that the rates depend on jumps, and where a
+//! sign in the rates changes (`switching`), which bisection of the step finds. The method is explicit; once an interval
+//! needs very many steps, the one for stiff plants (`stiff`) is taken if it needs fewer.
 
 pub(crate) mod equation;
 mod explicit;
@@ -17,49 +17,50 @@ use pebo_design::program::{Interpreter, Program};
 use super::layout::TIME;
 use super::signal::Signal;
 use crate::timing::real;
-use equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solve, Stuck};
-use explicit::Explicit;
-use stiff::Stiff;
-use switching::{Switched, Switching};
+use equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solver, Standstill};
+use explicit::ExplicitMethod;
+use stiff::StiffMethod;
+use switching::{SwitchPrograms, SwitchState};
 
-/// Steps between two samples before the plant counts as too stiff; about a second of computing.
+/// The most steps between two samples before the plant counts as too stiff; about a second of computing.
 const MOST_STEPS: u64 = 1_000_000;
 
 /// Explicit steps between two samples from which on the plant may be stiff.
 const MANY_STEPS: u64 = 1000;
 
-/// Steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
+/// The most steps of a whole run: a plant that needs hundreds a sample is given up after minutes, not days.
 const MOST_STEPS_IN_ALL: u64 = 400_000_000;
 
-/// Steps after which it is known how many a whole run takes; some seconds of computing at most.
+/// Steps after which the number for a whole run is extrapolated; some seconds of computing at most.
 const ENOUGH_STEPS: u64 = 2_000_000;
 
 /// The largest state that is integrated.
 pub(crate) const LARGEST: usize = 64;
 
-/// Changes of signs between two samples that are followed one by one. Where there are more the signs change ever faster, as
-/// those of a mass that a relay and friction bring to rest; from then on they are looked at [`LOOKS`] times a period.
+/// Changes of signs between two samples that are located one by one. Where there are more the signs change ever faster,
+/// as those of a mass that a relay and friction bring to rest; from then on they are evaluated [`LOOKS`] times a
+/// period.
 const MOST_SWITCHES: u64 = 100;
 
-/// How often between two samples signs may change that change without end: a level then moves by no more than it does in so
-/// small a part of the period.
+/// Evaluations between two samples of signs that change without end: a level then moves by no more than in so small a
+/// share of the period.
 const LOOKS: f64 = 1000.0;
 
-/// How far to either side a signal is looked at for its rate, as a part of the interval: of a formula whose third derivative
-/// is one over the interval cubed, the rate errs by 2e-9 of itself.
+/// The distance of the difference quotient for a signal's rate, as a share of the interval: for a formula whose third
+/// derivative is one over the interval cubed, the relative error of the rate is 2e-9.
 const ASIDE: f64 = 1e-4;
 
 /// The differential equation of a run.
 #[derive(Debug)]
 pub(crate) struct Flow {
     rates: Equation,
-    solver: Box<dyn Solve>,
-    /// The method for stiff plants, until it has shown that it needs as many steps.
-    stiff: Option<Box<dyn Solve>>,
-    /// Whether the plant has shown that it is stiff.
+    solver: Box<dyn Solver>,
+    /// The method for stiff plants, until it turns out to need as many steps.
+    stiff: Option<Box<dyn Solver>>,
+    /// True once the plant has turned out to be stiff.
     is_stiff: bool,
     state: Range<usize>,
-    /// When the rates jump.
+    /// The times at which the rates jump.
     jumps: Vec<f64>,
     next_jump: usize,
     slack: f64,
@@ -70,11 +71,11 @@ pub(crate) struct Flow {
 }
 
 impl Flow {
-    /// The equation with the rates of the table's positions `state`, and their derivatives by these where it may be stiff; of
-    /// the `signals`, those that it reads are followed.
+    /// The equation with the rates of the table's positions `state`, and their derivatives by these where it may be
+    /// stiff; it follows those of the `signals` that it reads.
     pub(crate) fn new(
         (rates, slopes): (&Program, Option<&Program>),
-        switches: Option<&Switched>,
+        switches: Option<&SwitchPrograms>,
         state: Range<usize>,
         signals: &[(usize, &Signal)],
         slack: f64,
@@ -93,15 +94,15 @@ impl Flow {
             formulas: Interpreter::new(rates),
             slopes: slopes.map(Interpreter::new),
             moves: !read.is_empty() || rates.reads(TIME),
-            switching: switches.map(|switches| Switching::new(switches, (RELATIVE, ABSOLUTE))),
+            switching: switches.map(|switches| SwitchState::new(switches, (RELATIVE, ABSOLUTE))),
             aside: 0.0,
         };
-        // A library's step takes an array: sizes are rounded up, and what is beyond the state stays 0.
-        let (solver, stiff): (Box<dyn Solve>, Box<dyn Solve>) = match state.len() {
-            0..=4 => (Box::new(Explicit::<4>::new()), Box::new(Stiff::<4>::new())),
-            5..=8 => (Box::new(Explicit::<8>::new()), Box::new(Stiff::<8>::new())),
-            9..=16 => (Box::new(Explicit::<16>::new()), Box::new(Stiff::<16>::new())),
-            _ => (Box::new(Explicit::<LARGEST>::new()), Box::new(Stiff::<LARGEST>::new())),
+        // A library's step takes an array: sizes are rounded up, and the padding is 0.
+        let (solver, stiff): (Box<dyn Solver>, Box<dyn Solver>) = match state.len() {
+            0..=4 => (Box::new(ExplicitMethod::<4>::new()), Box::new(StiffMethod::<4>::new())),
+            5..=8 => (Box::new(ExplicitMethod::<8>::new()), Box::new(StiffMethod::<8>::new())),
+            9..=16 => (Box::new(ExplicitMethod::<16>::new()), Box::new(StiffMethod::<16>::new())),
+            _ => (Box::new(ExplicitMethod::<LARGEST>::new()), Box::new(StiffMethod::<LARGEST>::new())),
         };
         let rates = Equation(RefCell::new(inner));
         // Where signs change, steps are short for another reason.
@@ -120,13 +121,13 @@ impl Flow {
         }
     }
 
-    /// The same for a run that ends then: once it is known that this would take too many steps, it is given up.
+    /// The same for a run with this end: given up once that would take too many steps.
     pub(crate) fn until(self, end: f64) -> Self {
         Self { until: end, ..self }
     }
 
-    /// Moves the state in `table` from the instant `from` to `to`, all other values held.
-    pub(crate) fn advance(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    /// Integrates the state in `table` from the instant `from` to `to`, all other values held.
+    pub(crate) fn advance(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let mut at = from;
         while let Some(&jump) = self.jumps.get(self.next_jump).filter(|jump| **jump < to - self.slack) {
             self.next_jump += 1;
@@ -140,12 +141,12 @@ impl Flow {
         if taken > ENOUGH_STEPS && real(taken) * self.until > real(MOST_STEPS_IN_ALL) * to {
             let state = table[self.state.clone()].to_vec();
             let fast = self.rates.0.get_mut().fastest(&state);
-            return Err(Stuck { steps: taken, at: to, state, fast });
+            return Err(Standstill { steps: taken, at: to, state, fast });
         }
         Ok(())
     }
 
-    fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    fn integrate(&mut self, table: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let rates = self.rates.0.get_mut();
         rates.table.copy_from_slice(table);
         rates.origin = from;
@@ -162,8 +163,8 @@ impl Flow {
         Ok(())
     }
 
-    /// Moves the state on by `length` seconds of smooth rates; gives the number of steps.
-    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Stuck> {
+    /// Integrates the state over `length` seconds of smooth rates; returns the number of steps.
+    fn smooth(&mut self, state: &mut [f64], length: f64) -> Result<u64, Standstill> {
         let most = self.left.min(MOST_STEPS);
         let Some(stiff) = &mut self.stiff else { return self.solver.solve(&self.rates, state, length, most, None) };
         if self.is_stiff {
@@ -176,8 +177,8 @@ impl Flow {
                 state.copy_from_slice(&begun);
                 return Ok(steps);
             }
-            // It will not get on with more steps.
-            Err(stuck) if stuck.steps < few => return Err(stuck),
+            // More steps would not help.
+            Err(standstill) if standstill.steps < few => return Err(standstill),
             Err(_) => {}
         }
         begun.copy_from_slice(state);
@@ -190,8 +191,8 @@ impl Flow {
         self.solver.solve(&self.rates, state, length, most, None)
     }
 
-    /// Moves the state on from one change of a sign to the next.
-    fn switch(&mut self, state: &mut [f64], from: f64, to: f64) -> Result<(), Stuck> {
+    /// Integrates the state from one change of a sign to the next.
+    fn switch(&mut self, state: &mut [f64], from: f64, to: f64) -> Result<(), Standstill> {
         let length = to - from;
         let (mut at, mut reached, mut most) = (0.0, Vec::new(), self.left.min(MOST_STEPS));
         let left = most;

@@ -1,27 +1,27 @@
-//! Plants in which something is much faster than the rest, between two samples.
+//! The method for stiff plants.
 //!
-//! Method: RODAS, a Rosenbrock method of order 4 with an error estimate of order 3 (Hairer and Wanner, *Solving ordinary
-//! differential equations II*, 1996, section VI.4; the coefficients are those of their program). Its steps are as long as the
-//! course of the state allows, however fast what has died out was. It takes the derivatives of the rates by the state,
-//! which the algebra knows exactly, so that each stage is one linear equation and nothing is iterated.
+//! Method: RODAS, a Rosenbrock method of order 4 with an error estimate of order 3 (Hairer and Wanner, *Solving
+//! ordinary differential equations II*, 1996, section VI.4; the coefficients are those of their program). Its steps are
+//! as long as the slow components allow once the fast ones have died out. It takes the derivatives of the rates by the
+//! state, which the algebra knows exactly, so that each stage is one linear equation and nothing is iterated.
 //!
-//! Own code, as the implicit methods of the library that has the explicit one will not do: they end after ten refused
-//! steps of a run, and what they iterate to is absolute, whatever the units.
+//! Own code, as the library's implicit methods will not do: they end after ten refused steps of a run, and the
+//! tolerance of their iteration is absolute, in any units.
 
 use pebo_runtime::nalgebra::{Const, DimMin, SMatrix, SVector};
 
-use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solve, Stuck, Watch};
+use super::equation::{ABSOLUTE, Equation, RELATIVE, SHORTEST, Solver, Standstill, StepCallback};
 
 /// The diagonal of the method.
 const GAMMA: f64 = 0.25;
 
-/// When a stage is, as a part of the step.
+/// The times of the stages, as shares of the step.
 const NODES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 
-/// How much of the rates' own derivative by time a stage takes.
+/// The weights of the rates' derivative by time in the stages.
 const DRIFTS: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
 
-/// Where a stage is, in the stages before it.
+/// The states of the stages, in the stages before.
 const PLACES: [[f64; 5]; 6] = [
     [0.0; 5],
     [1.544, 0.0, 0.0, 0.0, 0.0],
@@ -31,7 +31,7 @@ const PLACES: [[f64; 5]; 6] = [
     [1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
 
-/// What a stage takes of the stages before it beside the rates.
+/// The weights of the stages before beside the rates.
 const COUPLINGS: [[f64; 5]; 6] = [
     [0.0; 5],
     [-5.6688, 0.0, 0.0, 0.0, 0.0],
@@ -47,33 +47,33 @@ const COUPLINGS: [[f64; 5]; 6] = [
     ],
 ];
 
-/// A step is at least so many times the one before.
+/// The least ratio of a step to the one before.
 const LEAST: f64 = 0.2;
 
-/// And at most so many times.
+/// The largest ratio of a step to the one before.
 const MOST: f64 = 6.0;
 
-/// How near to the tolerance it is aimed.
+/// The share of the tolerance that a step aims at.
 const AIM: f64 = 0.9;
 
-/// How far apart the instants are from which the rates' derivative by time is taken, as a part of the interval: of a rate
-/// whose third derivative is one over the interval cubed, it errs by 3e-9 of itself.
+/// The distance of the instants in the difference quotient by time, as a share of the interval: for a rate whose third
+/// derivative is one over the interval cubed, its relative error is 3e-9.
 const APART: f64 = 1e-4;
 
-/// The method for states of up to so many components.
+/// The method for states of up to `N` components.
 #[derive(Debug)]
-pub(crate) struct Stiff<const N: usize> {
+pub(crate) struct StiffMethod<const N: usize> {
     /// The first step of the last interval, after which a fast part of the state follows a jump of the inputs.
     first: f64,
 }
 
-impl<const N: usize> Stiff<N> {
+impl<const N: usize> StiffMethod<N> {
     pub(crate) fn new() -> Self {
         Self { first: f64::INFINITY }
     }
 }
 
-impl<const N: usize> Solve for Stiff<N>
+impl<const N: usize> Solver for StiffMethod<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
@@ -83,8 +83,8 @@ where
         state: &mut [f64],
         length: f64,
         most: u64,
-        _watch: Option<&mut Watch<'_>>,
-    ) -> Result<u64, Stuck> {
+        _watch: Option<&mut StepCallback<'_>>,
+    ) -> Result<u64, Standstill> {
         let mut y = SVector::<f64, N>::zeros();
         y.as_mut_slice()[..state.len()].copy_from_slice(state);
         let (mut t, mut h, mut steps) = (0.0, length.min(MOST * self.first), 0);
@@ -93,7 +93,7 @@ where
             h = h.min(length - t);
             if steps == most || h.is_nan() || h <= SHORTEST * length {
                 let state = y.as_slice()[..state.len()].to_vec();
-                return Err(Stuck { steps, at: rates.origin() + t, state, fast: None });
+                return Err(Standstill { steps, at: rates.origin() + t, state, fast: None });
             }
             steps += 1;
             let &mut (ref slopes, drift) =
@@ -101,7 +101,7 @@ where
             let (next, error) = step(rates, (t, &y), h, slopes, &drift);
             let scaled =
                 |place: usize| error[place].abs() / (ABSOLUTE + RELATIVE * y[place].abs().max(next[place].abs()));
-            // What is no number is as wrong as can be.
+            // NaN counts as the largest error.
             let worst = (0..state.len()).map(scaled).fold(0.0, |worst, one| if one <= worst { worst } else { one });
             let scale = AIM * worst.powf(-0.25);
             if worst <= 1.0 {
@@ -117,7 +117,7 @@ where
     }
 }
 
-/// A step of `h` seconds: the state behind it, and its error.
+/// A step of `h` seconds: the state after it, and its error.
 fn step<const N: usize>(
     rates: &Equation,
     (t, y): (f64, &SVector<f64, N>),

@@ -1,13 +1,14 @@
-//! Switches in the rates: signs of what moves, as of dry friction or a relay.
+//! Switches in the rates: signs of varying levels, as of dry friction or a relay.
 //!
-//! In: rates with `sign(level)` in them. Out: rates in which each such sign is a symbol of its own, with levels, and slopes,
-//! which are how levels move along the rates; and, as a run goes on, the values of these symbols.
+//! In: rates with `sign(level)` in them. Out: rates in which each such sign is a symbol of its own, with levels, and
+//! their slopes along the rates; and, as a run goes on, the values of these symbols.
 //!
-//! Method: between two changes of a sign the rates are smooth, and an integrator with adaptive steps is at home. Where a level
-//! reaches zero there are three ways on. The level goes through; it turns away; or the rates of both sides lead back to zero,
-//! and the plant slides along it, as a mass that dry friction holds. There the sign has the value between -1 and 1 for which
-//! the level rests, the equivalent control (Utkin, *Sliding modes in control and optimization*, 1992, chapter 2), which is
-//! Filippov's solution wherever the sign enters the rates linearly. Sliding ends where that value leaves -1 to 1.
+//! Method: between two changes of a sign the rates are smooth, as an integrator with adaptive steps needs. Where a
+//! level reaches zero there are three cases. The level goes through; it turns away; or the rates of both sides lead
+//! back to zero, and the plant slides along it, as a mass that dry friction holds. There the sign has the value between
+//! -1 and 1 that keeps the level constant, the equivalent control (Utkin, *Sliding modes in control and optimization*,
+//! 1992, chapter 2), which is Filippov's solution wherever the sign enters the rates linearly. Sliding ends where that
+//! value leaves -1 to 1.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -18,23 +19,24 @@ use pebo_cas::{Arena, Expr, Function, Node, Symbol};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Diagnostic, Span};
 
-use crate::closed_loop::layout::{Layout, program, time};
+use crate::closed_loop::layout::{Layout, time};
+use crate::observe::design::program;
 
-/// Rounds in which switches that slide together are found: each is solved for with the others as they are.
+/// Rounds of the iteration for simultaneous sliding: each switch is solved for with the others held.
 const ROUNDS: usize = 200;
 
-/// A switch whose value moves by less than this is found.
+/// The iteration ends once the values change by less than this.
 const FOUND: f64 = 1e-13;
 
-/// A sliding switch this far beyond 1 is let go.
+/// A sliding switch this far beyond 1 is released.
 const BEYOND: f64 = 1e-12;
 
-/// The signs of what moves, taken out of rates.
+/// The signs of varying levels, extracted from rates.
 #[derive(Debug, Default)]
 pub(crate) struct Switches {
-    /// What stands for each sign, then for the rate of each signal that levels depend on.
+    /// The symbol of each sign, then of the rate of each signal that levels depend on.
     pub(crate) symbols: Vec<Symbol>,
-    /// What each is the sign of.
+    /// The argument of each sign.
     pub(crate) levels: Vec<Expr>,
     /// The rates of the levels.
     pub(crate) slopes: Vec<Expr>,
@@ -43,7 +45,7 @@ pub(crate) struct Switches {
 }
 
 impl Switches {
-    /// The signs in the rates of a run's state, which are taken out of them and stand at the end of its table.
+    /// Extracts the signs from the rates of a run's state; their symbols are at the end of its table.
     pub(crate) fn of(arena: &Arena, layout: Layout, rates: &mut [Expr]) -> (Layout, Self) {
         let (state, signals) = (&layout.symbols[layout.state.clone()], &layout.symbols[layout.signals.clone()]);
         let switches = Self::take(arena, rates, state, signals);
@@ -51,7 +53,8 @@ impl Switches {
         (Layout { symbols, ..layout }, switches)
     }
 
-    /// Takes the signs out of the rates of a state; of what is held from sample to sample a sign is a number, and stays.
+    /// Extracts the signs from the rates of a state; the sign of a level held from sample to sample is a number, and is
+    /// kept.
     pub(crate) fn take(arena: &Arena, rates: &mut [Expr], state: &[Symbol], signals: &[Symbol]) -> Self {
         let moving: BTreeSet<Symbol> = state.iter().chain(signals).copied().chain([time(arena)]).collect();
         let (mut found, mut values) = (Self::default(), FxHashMap::default());
@@ -84,16 +87,21 @@ impl Switches {
         found
     }
 
-    /// The same as programs on a table of these symbols, at whose end stand those that were put in; none where there are no
+    /// The same as programs on a table of these symbols, with those of the signs at its end; none where there are no
     /// switches.
-    pub(crate) fn programs(&self, arena: &Arena, table: &[Symbol], span: Span) -> Result<Option<Switched>, Diagnostic> {
+    pub(crate) fn programs(
+        &self,
+        arena: &Arena,
+        table: &[Symbol],
+        span: Span,
+    ) -> Result<Option<SwitchPrograms>, Diagnostic> {
         if self.levels.is_empty() {
             return Ok(None);
         }
         let first = table.len() - self.symbols.len();
         let rates = first + self.levels.len()..table.len();
         let place = |symbol: &Symbol| table.iter().position(|known| known == symbol);
-        Ok(Some(Switched {
+        Ok(Some(SwitchPrograms {
             levels: program(arena, table, &self.levels, span)?,
             slopes: program(arena, table, &self.slopes, span)?,
             places: first..rates.start,
@@ -102,47 +110,47 @@ impl Switches {
     }
 }
 
-/// The same as programs on the table of a run.
+/// The switches as programs on the table of a run.
 #[derive(Debug)]
-pub(crate) struct Switched {
+pub(crate) struct SwitchPrograms {
     pub(crate) levels: Program,
     pub(crate) slopes: Program,
-    /// Where the signs stand in the table.
+    /// The positions of the signs in the table.
     pub(crate) places: Range<usize>,
-    /// Where signals stand that levels depend on, each with the place of its rate.
+    /// The positions of signals that levels depend on, each with that of its rate.
     pub(crate) moving: Vec<(usize, usize)>,
 }
 
-/// What a switch does for the time being.
+/// The mode of a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// It has this value.
+    /// Held at this value.
     Held(f64),
-    /// Its level rests at zero.
+    /// Sliding: the level is held at zero.
     Sliding,
 }
 
-/// Switches at work.
+/// The state of the switches in a run.
 #[derive(Debug)]
-pub(crate) struct Switching {
+pub(crate) struct SwitchState {
     levels: Interpreter,
     slopes: Interpreter,
     places: Range<usize>,
     pub(crate) moving: Vec<(usize, usize)>,
     modes: Vec<Mode>,
-    /// The largest magnitude of each level so far.
+    /// The largest absolute value of each level so far.
     peaks: Vec<f64>,
-    /// What the integrator knows a level to: of its largest magnitude, and of any.
+    /// The integrator's tolerances for a level: relative to its largest absolute value, and absolute.
     tolerance: (f64, f64),
-    /// How fast a level that should rest is led back to zero, in 1/s: rounding would let it wander.
+    /// The rate at which a sliding level is led back to zero, in 1/s: rounding would let it wander.
     pull: f64,
     at: Vec<f64>,
     moves: Vec<f64>,
 }
 
-impl Switching {
-    /// Before a run, with the relative and the absolute tolerance of the integrator.
-    pub(crate) fn new(switched: &Switched, tolerance: (f64, f64)) -> Self {
+impl SwitchState {
+    /// The switches before a run, with the relative and the absolute tolerance of the integrator.
+    pub(crate) fn new(switched: &SwitchPrograms, tolerance: (f64, f64)) -> Self {
         let count = switched.places.len();
         Self {
             levels: Interpreter::new(&switched.levels),
@@ -158,12 +166,12 @@ impl Switching {
         }
     }
 
-    /// Before an interval of this length in seconds.
+    /// Prepares an interval of this length in seconds.
     pub(crate) fn begin(&mut self, length: f64) {
         self.pull = 1.0 / length;
     }
 
-    /// Decides what each switch does from here on; those of `reached` are at zero whatever their levels round to.
+    /// Decides the mode of each switch from here on; those of `reached` are at zero whatever their levels round to.
     pub(crate) fn decide(&mut self, table: &mut [f64], reached: &[bool]) {
         self.hold(table);
         self.levels.run(table, &mut self.at);
@@ -182,7 +190,7 @@ impl Switching {
         for _ in 0..ROUNDS {
             let mut change: f64 = 0.0;
             for &switch in &open {
-                let (value, mode) = self.way_on(switch, table);
+                let (value, mode) = self.value_at_zero(switch, table);
                 let place = self.places.start + switch;
                 change = change.max((value - table[place]).abs());
                 (table[place], self.modes[switch]) = (value, mode);
@@ -194,7 +202,7 @@ impl Switching {
     }
 
     /// The value of a switch whose level is at zero, with the others as they are.
-    fn way_on(&mut self, switch: usize, table: &mut [f64]) -> (f64, Mode) {
+    fn value_at_zero(&mut self, switch: usize, table: &mut [f64]) -> (f64, Mode) {
         let (below, above) = self.sides(switch, table);
         let level = self.at[switch];
         let sign = if level == 0.0 { 0.0 } else { level.signum() };
@@ -206,12 +214,12 @@ impl Switching {
         match (below, above) {
             (below, above) if below >= 0.0 && above > 0.0 => held(1.0),
             (below, above) if below < 0.0 && above <= 0.0 => held(-1.0),
-            // It rests with this value.
+            // The level is constant with this value.
             (_, above) if above == 0.0 && below > 0.0 => held(1.0),
             (below, _) if below == 0.0 && above < 0.0 => held(-1.0),
-            // It does not move, whatever the switch says.
+            // The level is constant at any value.
             (below, above) if below == 0.0 && above == 0.0 => held(sign),
-            // Both sides lead away: it stays on the side where it was.
+            // Both sides lead away: it keeps its side.
             _ => match self.modes[switch] {
                 Mode::Held(value) if value != 0.0 => held(value),
                 _ => held(if sign == 0.0 { 1.0 } else { sign }),
@@ -219,7 +227,7 @@ impl Switching {
         }
     }
 
-    /// How a level moves with its switch at -1 and at 1, with what leads it back to zero.
+    /// The rates of a level with its switch at -1 and at 1, with the pull back to zero.
     fn sides(&mut self, switch: usize, table: &mut [f64]) -> (f64, f64) {
         let place = self.places.start + switch;
         let now = table[place];
@@ -230,7 +238,7 @@ impl Switching {
         });
         table[place] = now;
         let back = self.pull * self.at[switch];
-        // Of a level that does not move there is nothing to lead back.
+        // A constant level needs no pull.
         if below == 0.0 && above == 0.0 { (0.0, 0.0) } else { (below + back, above + back) }
     }
 
@@ -253,7 +261,7 @@ impl Switching {
                 (0..self.modes.len()).filter(|switch| self.modes[*switch] == Mode::Sliding).collect::<Vec<_>>()
             {
                 let (below, above) = self.sides(switch, table);
-                // What no longer acts on its level keeps its value until all is decided anew.
+                // A switch that no longer acts on its level keeps its value until all is decided anew.
                 if below <= above {
                     continue;
                 }
@@ -262,14 +270,14 @@ impl Switching {
                 change = change.max((value - table[place]).abs());
                 table[place] = value;
             }
-            // What is no number changes no more.
+            // NaN ends the iteration.
             if change.is_nan() || change <= FOUND {
                 break;
             }
         }
     }
 
-    /// Which switches can no longer do what they do: a level came to the other side, or what would hold it is beyond 1.
+    /// The switches whose mode has ended: a level changed its sign, or a sliding value is beyond 1.
     pub(crate) fn reached(&mut self, table: &mut [f64]) -> Option<Vec<bool>> {
         self.hold(table);
         self.levels.run(table, &mut self.at);
@@ -288,7 +296,7 @@ impl Switching {
         all.contains(&true).then_some(all)
     }
 
-    /// What counts as zero of a level.
+    /// The distance within which a level counts as zero.
     fn near(&self, switch: usize) -> f64 {
         self.tolerance.1 + self.tolerance.0 * self.peaks[switch]
     }

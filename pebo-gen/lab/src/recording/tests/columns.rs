@@ -1,4 +1,4 @@
-//! What the columns mean.
+//! The meaning of columns.
 
 use super::{CART, Log, replay, resolve};
 
@@ -6,7 +6,7 @@ fn columns(header: &str) -> Vec<String> {
     Log::open("log.csv", header.as_bytes()).expect("a header").columns().to_vec()
 }
 
-/// Code, message, and the first note and help of what is wrong with the section for this header.
+/// Code, message, first note and help of the complaint about the section for this header.
 fn said(recording: &str, header: &str) -> Vec<String> {
     let log = Log::open("log.csv", header.as_bytes()).expect("a header");
     let found = resolve(&format!("{CART}{recording}\n"), &log).expect_err("something is wrong");
@@ -58,7 +58,7 @@ fn formulas_say_what_columns_mean() {
 }
 
 #[test]
-fn what_a_recording_does_not_say_is_reported_with_its_columns() {
+fn missing_signals_are_reported_with_the_columns() {
     let found = said("", "time,q,force\n");
     let columns = "the columns of log.csv are `time`, `q`, `force`";
     let time = "add `t`, a formula in columns, or `step`, the seconds from row to row, under `recording`";

@@ -1,4 +1,4 @@
-//! Tables of text in, what the observer makes of them out.
+//! Replays of tables in text.
 
 mod columns;
 mod rows;
@@ -36,7 +36,7 @@ fn resolve(text: &str, log: &Log) -> Result<Replay, Vec<Diagnostic>> {
     Replay::resolve(&model, &plant, &derivation, log)
 }
 
-/// What came of it, and the estimates.
+/// The result, and the estimates.
 fn replay(model: &str, recording: &str) -> Result<(Replayed, String), Failure> {
     let mut log = Log::open("log.csv", recording.as_bytes()).map_err(Failure::Unreadable)?;
     let replay = resolve(model, &log).expect("the columns have a meaning");
@@ -51,7 +51,7 @@ fn faults(recording: &str) -> Vec<String> {
     replayed.faults.iter().map(ToString::to_string).collect()
 }
 
-/// What is said of a recording of the cart that cannot be read.
+/// The complaint about a recording of the cart that cannot be read.
 fn refusal(recording: &str) -> String {
     let failure = replay(CART, recording).expect_err("it cannot be read");
     let log = Log::open("log.csv", "t,q,f\n".as_bytes()).expect("a header");

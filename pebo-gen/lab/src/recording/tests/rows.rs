@@ -1,4 +1,4 @@
-//! What is wrong with rows, and what comes of the others.
+//! Faults of rows, and the treatment of the others.
 
 use std::ops::ControlFlow;
 
@@ -85,8 +85,8 @@ fn a_refused_sample_leaves_its_time_and_input_to_the_next() {
     let (holed, coarse) = (last(holed), last(coarse));
     // To the rounding of a mean: sixteen times some units of the last place of numbers below 64.
     assert!((holed - coarse).abs() < 1e-12, "{holed} {coarse}");
-    // And near the truth, t^2/2 + 1: a filter of bandwidth a takes the rate of an output to be constant over a step, which
-    // costs a f dt^2/12 of the momentum.
+    // And near the truth, t^2/2 + 1: a filter of bandwidth a takes the rate of an output to be constant over a step,
+    // which costs a f dt^2/12 of the momentum.
     assert!((holed - 33.0).abs() < 5.0 * 8.0 * (12.0_f64 / 64.0).powi(2) / 12.0, "{holed}");
 }
 
@@ -114,7 +114,7 @@ fn a_row_that_is_no_row_is_refused_with_line_and_column() {
         assert!(said.starts_with("recording-malformed: log.csv"), "{said}");
         assert!(said.contains(expected), "{recording:?}: {said}");
     }
-    // What no formula reads may be anything.
+    // Columns that no formula reads may hold anything.
     assert_eq!(faults("t,note,q,f\n0,\"a, b\",0,0\n1,,0,0\n"), [""; 0]);
     // Nor is a cell too many one if it is empty.
     assert_eq!(faults("t,q,f\n0,0,0,\n1,0,0,\n"), [""; 0]);

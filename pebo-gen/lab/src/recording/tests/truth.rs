@@ -1,4 +1,4 @@
-//! A simulation's own table, replayed.
+//! Replays of a simulation's own table.
 
 use std::ops::ControlFlow;
 
@@ -13,7 +13,7 @@ const MOTOR: &str = include_str!("../../../../../models/motor.yaml");
 const BATTERY: &str = include_str!("../../../../../models/battery.yaml");
 const DRIVE: &str = include_str!("../../../../../models/two_mass_drive.yaml");
 
-/// A run of the model's own scenario of which the table has every sample.
+/// A run of the model's own scenario with every sample in the table.
 fn simulated(text: &str, (duration, step): (f64, f64)) -> Trace {
     let model = Model::parse(&Source::new("model", text).expect("a short text")).expect("a model");
     let plant = Plant::resolve(&model).expect("a plant");
@@ -35,7 +35,7 @@ fn columns(csv: &str) -> Vec<(String, Vec<f64>)> {
     columns
 }
 
-/// The largest difference of an estimate or error, in parts of the largest that there is.
+/// The largest difference of an estimate or error, relative to the largest value.
 fn apart(trace: &Trace, csv: &str) -> f64 {
     let mut worst = 0.0_f64;
     for (name, values) in columns(csv) {
@@ -68,9 +68,10 @@ const RUNS: [(&str, &str, (f64, f64)); 5] = [
     ("shaken", SHAKEN, (10.0, 0.01)),
 ];
 
-/// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two instants
-/// that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the simulation has the
-/// step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten times that.
+/// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two
+/// instants that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the
+/// simulation has the step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten
+/// times that.
 #[test]
 fn a_recording_on_which_nothing_settles_says_why() {
     let advice = |model: &str, recording: &str| {

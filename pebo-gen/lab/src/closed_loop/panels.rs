@@ -1,4 +1,4 @@
-//! The parts of the figure: those that the model file describes, or errors, outputs and inputs.
+//! The panels of a run's figure: those that the model file describes, or errors, outputs and inputs.
 //!
 //! A curve that shows estimates of the observer is drawn once more for each baseline that estimates
 //! the same states, with the baseline's name beside it.
@@ -7,52 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::Scale;
-use pebo_design::plant::{Plant, lower};
+use pebo_design::plant::lower;
 use pebo_design::source::Diagnostics;
 
-use super::baseline::Rival;
-use super::layout::{estimate, rival_estimate};
+use super::baseline::ResolvedBaseline;
+use super::layout::{baseline_estimate, estimate};
 use super::scope::{Estimates, Names, Sight, View};
 use crate::figure::label::Label;
+use crate::figure::panel::Panel;
 use crate::figure::unit;
-
-/// A part of the figure.
-#[derive(Debug)]
-pub(crate) struct Panel {
-    pub(crate) title: String,
-    pub(crate) unit: Option<String>,
-    pub(crate) scale: Scale,
-    /// The labels of its curves.
-    pub(crate) curves: Vec<Label>,
-}
-
-impl Panel {
-    /// Signals that stand on one axis: on a linear one, those of one unit. A flow in cubic metres per second is flat at zero
-    /// beside a temperature in kelvin.
-    pub(crate) fn groups<C>(plant: &Plant, scale: Scale, curves: Vec<C>, symbol: impl Fn(&C) -> Symbol) -> Vec<Vec<C>> {
-        let mut groups: Vec<(Option<&String>, Vec<C>)> = Vec::new();
-        for curve in curves {
-            let unit = Some(symbol(&curve)).filter(|_| scale == Scale::Linear).and_then(|s| plant.units.get(&s));
-            match groups.iter_mut().find(|(known, _)| *known == unit) {
-                Some((_, group)) => group.push(curve),
-                None => groups.push((unit, vec![curve])),
-            }
-        }
-        groups.into_iter().map(|(_, group)| group).collect()
-    }
-
-    /// Curves of signals: the unit that all have goes to the axis, else each goes beside its curve.
-    pub(crate) fn of_signals(plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label)>) -> Self {
-        let unit_of = |symbol: &Symbol| plant.units.get(symbol).map(String::as_str);
-        let unit = unit::same(curves.iter().map(|curve| unit_of(&curve.0))).map(str::to_owned);
-        let labelled = |(symbol, label): (Symbol, Label)| match unit_of(&symbol).filter(|_| unit.is_none()) {
-            Some(unit) => label.in_unit(unit),
-            None => label,
-        };
-        let curves = curves.into_iter().map(labelled).collect();
-        Self { title: title.to_owned(), unit, scale, curves }
-    }
-}
 
 /// The panels, and the values of their curves one after the other.
 #[derive(Debug, Default)]
@@ -67,10 +30,10 @@ impl Panels {
         names: &Names,
         hats: &Estimates,
         errors: &[Expr],
-        rivals: &[Rival],
+        baselines: &[ResolvedBaseline],
         problems: &mut Diagnostics,
     ) -> Self {
-        let mut pass = Pass { names, hats, rivals, found: Self::default() };
+        let mut pass = PanelResolver { names, hats, baselines, found: Self::default() };
         if names.simulation.panels.is_empty() {
             pass.usual(errors);
         } else {
@@ -80,15 +43,15 @@ impl Panels {
     }
 }
 
-struct Pass<'a> {
+struct PanelResolver<'a> {
     names: &'a Names<'a>,
     hats: &'a Estimates,
-    rivals: &'a [Rival],
+    baselines: &'a [ResolvedBaseline],
     found: Panels,
 }
 
-impl Pass<'_> {
-    /// As the file has them; estimate less truth is the error, which of an angle is the shorter way round.
+impl PanelResolver<'_> {
+    /// The panels of the file; estimate less truth is the error, for an angle the shorter way round.
     fn written(&mut self, errors: &[Expr], problems: &mut Diagnostics) {
         let arena = &self.names.plant.arena;
         let differences = self.hats.iter().map(|(state, hat)| arena.sub(*hat, arena.variable(state)));
@@ -109,8 +72,8 @@ impl Pass<'_> {
         }
     }
 
-    /// Errors on a logarithmic axis, which alone shows those of all units and sizes; outputs and inputs, of each unit on an
-    /// axis of their own.
+    /// Errors on a logarithmic axis, which alone shows all units and sizes; outputs and inputs, each unit on an axis of
+    /// its own.
     fn usual(&mut self, errors: &[Expr]) {
         let plant = self.names.plant;
         let arena = &plant.arena;
@@ -145,9 +108,9 @@ impl Pass<'_> {
         for (label, value) in curves {
             labels.push(label.clone());
             self.found.values.push(value);
-            for rival in self.rivals {
-                if let Some(other) = through(self.names, self.hats, value, rival) {
-                    labels.push(label.clone().remark(&rival.name));
+            for baseline in self.baselines {
+                if let Some(other) = through(self.names, self.hats, value, baseline) {
+                    labels.push(label.clone().remark(&baseline.name));
                     self.found.values.push(other);
                 }
             }
@@ -157,11 +120,11 @@ impl Pass<'_> {
 }
 
 /// The value with a baseline's estimates in place of the observer's, if there are any in it and it has them all.
-fn through(names: &Names, hats: &Estimates, value: Expr, rival: &Rival) -> Option<Expr> {
+fn through(names: &Names, hats: &Estimates, value: Expr, baseline: &ResolvedBaseline) -> Option<Expr> {
     let arena = &names.plant.arena;
     let symbols: BTreeSet<Symbol> = hats.iter().filter_map(|(_, hat)| arena.as_symbol(*hat)).collect();
-    let own: BTreeMap<Symbol, Expr> = (rival.estimates.iter())
-        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(rival_estimate(arena, &rival.name, state))))
+    let own: BTreeMap<Symbol, Expr> = (baseline.estimates.iter())
+        .map(|(state, _)| (estimate(arena, state), arena.of_symbol(baseline_estimate(arena, &baseline.name, state))))
         .collect();
     let replaced = arena.substitute(value, &own);
     (arena.depends_on(value, &symbols) && !arena.depends_on(replaced, &symbols)).then_some(replaced)

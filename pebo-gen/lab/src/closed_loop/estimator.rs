@@ -1,7 +1,7 @@
-//! A model with another estimator.
+//! Replaces the estimator of a model.
 //!
-//! In: the model, and the estimator of the call. Out: the model as if its file had it, with settings that play the same part
-//! as those of the file's own.
+//! In: the model, and the estimator of the call. Out: the model as if its file had it, with settings that correspond to
+//! those of the file's own.
 
 use std::borrow::Cow;
 
@@ -9,10 +9,10 @@ use crate::settings::BANDWIDTH;
 use pebo_design::model::{Decimal, Estimator, Model, Observer, Spanned};
 use pebo_design::source::Span;
 
-use super::overrides::Overrides;
+use crate::overrides::Overrides;
 
 /// The model with the estimator of the call.
-pub(crate) fn changed<'a>(model: &'a Model, overrides: &Overrides) -> Cow<'a, Model> {
+pub(crate) fn overridden<'a>(model: &'a Model, overrides: &Overrides) -> Cow<'a, Model> {
     let Some(estimator) = overrides.estimator else { return Cow::Borrowed(model) };
     let of_file = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let step = overrides.step.or(of_file.map(|step| step.value.to_f64()));
@@ -32,7 +32,7 @@ fn with_estimator(written: &Observer, estimator: Estimator, step: Option<f64>) -
     let has = |key: &str| estimator.needs().contains(&key) || estimator.admits().contains(&key);
     let one = |text: &str| Decimal::parse(text, Span::NOWHERE).ok().map(placed);
     let list = |text: &str| one(text).into_iter().collect::<Vec<_>>();
-    // Gradients and least squares turn at the same rate at the start where a gain is the other's covariance.
+    // Gradients and least squares have the same speed at the start where a gain is the other's covariance.
     let speed = match written.estimator() {
         Estimator::Gradient | Estimator::NormalisedGradient => &written.gain,
         Estimator::LeastSquares | Estimator::LeastSquaresDrem => &written.covariance,
@@ -66,7 +66,7 @@ fn with_estimator(written: &Observer, estimator: Estimator, step: Option<f64>) -
     }
 }
 
-/// A section of known numbers without these, for gains: only least squares has a use for them.
+/// A section of known numbers without these, for gains: only least squares use them.
 fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
     let filter = step.and_then(|step| Decimal::parse(&format!("{:e}", BANDWIDTH / step), Span::NOWHERE).ok());
     Observer {
@@ -81,7 +81,7 @@ fn of_gains(written: &Observer, step: Option<f64>) -> Observer {
 }
 
 /// The estimator with its settings, as a file would have them.
-pub(crate) fn told(observer: &Observer) -> String {
+pub(crate) fn estimator_text(observer: &Observer) -> String {
     let one = |number: &Option<Spanned<Decimal>>| number.iter().cloned().collect::<Vec<_>>();
     let settings = [
         ("gain", observer.gain.clone()),

@@ -1,4 +1,4 @@
-//! What the regression goes through, of a kind and length that are not known before the run.
+//! The operator of the regression, of a kind and length that are not known before the run.
 
 use std::collections::VecDeque;
 
@@ -12,13 +12,13 @@ use super::sizes::padded;
 
 /// The operator of a padded model.
 #[derive(Clone, Debug)]
-pub(crate) enum Passage<const N: usize> {
+pub(crate) enum PaddedOperator<const N: usize> {
     Filtered(FilteredRegression<f64, N, N>),
     Windowed(Window<N>),
     Sampled(SampledRegression<f64, N, N>),
 }
 
-impl<const N: usize> Passage<N> {
+impl<const N: usize> PaddedOperator<N> {
     pub(crate) fn new(settings: &Settings) -> Result<Self, pebo_runtime::Fault> {
         Ok(match &settings.operator {
             Operator::Filter(alpha) => Self::Filtered(FilteredRegression::new(Filter::new(*alpha, settings.hold)?)),
@@ -28,22 +28,22 @@ impl<const N: usize> Passage<N> {
     }
 }
 
-impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
-    type Step = Taken<N>;
+impl<const N: usize> RegressionOperator<f64, N, N> for PaddedOperator<N> {
+    type Step = PaddedStep<N>;
 
-    fn step(&self, sides: [&Sides<f64, N, N>; 2], dt: f64) -> Taken<N> {
+    fn step(&self, sides: [&Sides<f64, N, N>; 2], dt: f64) -> PaddedStep<N> {
         match self {
-            Self::Filtered(filtered) => Taken::Filtered(filtered.step(sides, dt)),
-            Self::Windowed(window) => Taken::Windowed(Box::new(window.step(sides, dt))),
-            Self::Sampled(sampled) => Taken::Sampled(sampled.step(sides, dt)),
+            Self::Filtered(filtered) => PaddedStep::Filtered(filtered.step(sides, dt)),
+            Self::Windowed(window) => PaddedStep::Windowed(Box::new(window.step(sides, dt))),
+            Self::Sampled(sampled) => PaddedStep::Sampled(sampled.step(sides, dt)),
         }
     }
 
-    fn take(&mut self, step: Taken<N>) {
+    fn take(&mut self, step: PaddedStep<N>) {
         match (self, step) {
-            (Self::Filtered(filtered), Taken::Filtered(step)) => filtered.take(step),
-            (Self::Windowed(window), Taken::Windowed(step)) => window.take(*step),
-            (Self::Sampled(sampled), Taken::Sampled(step)) => sampled.take(step),
+            (Self::Filtered(filtered), PaddedStep::Filtered(step)) => filtered.take(step),
+            (Self::Windowed(window), PaddedStep::Windowed(step)) => window.take(*step),
+            (Self::Sampled(sampled), PaddedStep::Sampled(step)) => sampled.take(step),
             _ => unreachable!("a step is taken by what worked it out"),
         }
     }
@@ -99,13 +99,13 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Passage<N> {
 
 /// A step of each kind; that of a window, the largest by far, behind a pointer.
 #[derive(Clone, Debug)]
-pub(crate) enum Taken<const N: usize> {
+pub(crate) enum PaddedStep<const N: usize> {
     Filtered(FilteredRegression<f64, N, N>),
-    Windowed(Box<Moved<N>>),
+    Windowed(Box<WindowStep<N>>),
     Sampled(SampledRegression<f64, N, N>),
 }
 
-impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
+impl<const N: usize> Outcome<f64, N, N> for PaddedStep<N> {
     fn regressand(&self) -> SVector<f64, N> {
         match self {
             Self::Filtered(step) => Outcome::regressand(step),
@@ -131,8 +131,8 @@ impl<const N: usize> Outcome<f64, N, N> for Taken<N> {
     }
 }
 
-/// Of samples; of what went through a filter or window no row can be left out, and nobody asks.
-impl<const N: usize> Rows<f64, N> for Taken<N> {
+/// Rows of samples; from the outcome of a filter or window no row can be left out, and none is asked for.
+impl<const N: usize> Rows<f64, N> for PaddedStep<N> {
     fn weights(&self, dt: f64) -> SVector<f64, N> {
         match self {
             Self::Sampled(step) => step.weights(dt),
@@ -155,8 +155,8 @@ pub(crate) struct Window<const N: usize> {
     hold: Hold,
     samples: usize,
     /// Integrals over the steps in the window with their lengths, the oldest first.
-    steps: VecDeque<Step<N>>,
-    /// How many of the newest make up the front.
+    steps: VecDeque<Integral<N>>,
+    /// The number of the newest steps in the front.
     recent: usize,
     total: Total<N>,
     /// Full, it becomes the total.
@@ -164,7 +164,7 @@ pub(crate) struct Window<const N: usize> {
 }
 
 /// Both sides integrated over a step, and its length.
-type Step<const N: usize> = (Sides<f64, N, N>, f64);
+type Integral<const N: usize> = (Sides<f64, N, N>, f64);
 
 #[derive(Clone, Debug)]
 struct Total<const N: usize> {
@@ -182,7 +182,7 @@ impl<const N: usize> Total<N> {
         }
     }
 
-    fn add(&mut self, (sides, length): &Step<N>) {
+    fn add(&mut self, (sides, length): &Integral<N>) {
         self.known.add(&sides.known);
         self.factor.add(&sides.factor);
         self.duration.add(&SVector::repeat(*length));
@@ -215,13 +215,13 @@ impl<const N: usize> Window<N> {
 
 /// A window with one more step in it.
 #[derive(Clone, Debug)]
-pub(crate) struct Moved<const N: usize> {
-    step: Step<N>,
+pub(crate) struct WindowStep<const N: usize> {
+    step: Integral<N>,
     total: Total<N>,
     front: Total<N>,
 }
 
-impl<const N: usize> Outcome<f64, N, N> for Moved<N> {
+impl<const N: usize> Outcome<f64, N, N> for WindowStep<N> {
     fn regressand(&self) -> SVector<f64, N> {
         self.total.mean_known()
     }
@@ -236,9 +236,9 @@ impl<const N: usize> Outcome<f64, N, N> for Moved<N> {
 }
 
 impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
-    type Step = Moved<N>;
+    type Step = WindowStep<N>;
 
-    fn step(&self, [start, end]: [&Sides<f64, N, N>; 2], dt: f64) -> Moved<N> {
+    fn step(&self, [start, end]: [&Sides<f64, N, N>; 2], dt: f64) -> WindowStep<N> {
         let sides = match self.hold {
             Hold::Zero => Sides { known: start.known * dt, factor: start.factor * dt },
             Hold::First => Sides {
@@ -256,13 +256,13 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
         total.add(&step);
         front.add(&step);
         if self.recent + 1 == self.samples {
-            Moved { step, total: front, front: Total::nothing() }
+            WindowStep { step, total: front, front: Total::nothing() }
         } else {
-            Moved { step, total, front }
+            WindowStep { step, total, front }
         }
     }
 
-    fn take(&mut self, Moved { step, total, front }: Moved<N>) {
+    fn take(&mut self, WindowStep { step, total, front }: WindowStep<N>) {
         if self.steps.len() == self.samples {
             self.steps.pop_front();
         }
@@ -313,7 +313,7 @@ impl<const N: usize> RegressionOperator<f64, N, N> for Window<N> {
     }
 
     fn is_finite(&self) -> bool {
-        // What is not finite makes a sum so at once.
+        // A step that is not finite makes a sum so at once.
         self.total.is_finite() && self.front.is_finite()
     }
 }

@@ -1,26 +1,26 @@
-//! An observer fed sample by sample, some of which are missing.
+//! Drives an observer sample by sample, with missing samples bridged.
 //!
-//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. What is missing or
-//! refused is bridged as on the target: the next sample covers the time since the last one that was accepted, with the mean
-//! of the inputs (the runtime's [`Gap`]). Knows nothing of where samples are from.
+//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. Missing and refused
+//! samples are bridged as on the target: the next sample covers the time since the last accepted one, with the mean of
+//! the inputs (the runtime's [`Gap`]). Independent of the source of samples.
 
 use pebo_runtime::{Fault, Gap};
 
-use super::interpreted::Estimation;
+use super::interpreted::DynObserver;
 use super::sizes::{LARGEST, pad};
 use crate::score::faults::Faults;
 
-/// Samples in a row that may be refused: an observer that refuses as many has lost its state, and a later sample will not
-/// bring it back.
+/// The most refused samples in a row: an observer that refuses as many has lost its state, and a later sample will not
+/// restore it.
 const PATIENCE: u64 = 100;
 
-/// Samples from one innovation that is judged to the next: each costs a step.
-const JUDGED: u64 = 16;
+/// Samples from one judged innovation to the next: each costs a step.
+const JUDGING_INTERVAL: u64 = 16;
 
-/// An observer at work.
+/// A running observer.
 #[derive(Debug)]
-pub(crate) struct Stepping {
-    pub(crate) observer: Box<dyn Estimation>,
+pub(crate) struct ObserverDriver {
+    pub(crate) observer: Box<dyn DynObserver>,
     /// Intervals since the last accepted sample, if there are any but the current one.
     gap: Option<Gap<f64, LARGEST>>,
     started: bool,
@@ -35,9 +35,9 @@ pub(crate) struct Stepping {
     surprise: (f64, u64),
 }
 
-impl Stepping {
-    /// Before the first sample.
-    pub(crate) fn new(observer: Box<dyn Estimation>) -> Self {
+impl ObserverDriver {
+    /// The observer before the first sample.
+    pub(crate) fn new(observer: Box<dyn DynObserver>) -> Self {
         Self {
             observer,
             gap: None,
@@ -51,15 +51,15 @@ impl Stepping {
         }
     }
 
-    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A fault
-    /// is counted, and leaves the estimates as they are.
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A
+    /// fault is counted, and leaves the estimates as they are.
     ///
     /// # Errors
     /// The fault of a sample that was refused.
     pub(crate) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
         self.unjudged += 1;
-        if self.unjudged >= JUDGED
+        if self.unjudged >= JUDGING_INTERVAL
             && self.gap.is_none()
             && !is_parted
             && let Some(square) = self.observer.surprise(y, u, dt)
@@ -82,7 +82,7 @@ impl Stepping {
             return Ok(());
         };
         self.faults.add(fault);
-        // A sample off the range of its sensor says nothing of the observer, however many there are.
+        // Samples out of the range of their sensor say nothing of the observer, however many there are.
         self.refused += u64::from(!matches!(fault, Fault::OutputRange { .. } | Fault::InputRange { .. }));
         if self.started {
             self.wait(u, dt);
@@ -90,17 +90,17 @@ impl Stepping {
         Err(fault)
     }
 
-    /// Whether nothing good is to be expected of the observer any more: it refused its first sample, or many in a row.
+    /// True once the observer has refused its first sample, or many in a row.
     pub(crate) fn has_given_up(&self) -> bool {
         self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
     }
 
-    /// Whether a sample has been accepted.
+    /// True if a sample has been accepted.
     pub(crate) fn has_started(&self) -> bool {
         self.started
     }
 
-    /// Takes an interval at whose end no sample arrived.
+    /// Takes an interval without a sample at its end.
     pub(crate) fn miss(&mut self, u: &[f64], dt: f64) {
         self.dropped += 1;
         self.wait(u, dt);
@@ -125,13 +125,13 @@ impl Stepping {
         (self.surprise.1 > 0).then(|| self.surprise.0 / crate::timing::real(self.surprise.1))
     }
 
-    /// The standard errors of the estimates, with what has passed since the last accepted sample.
+    /// The standard errors of the estimates now, some time after the last accepted sample.
     pub(crate) fn standard_errors(&self) -> Option<Vec<f64>> {
         let age = self.gap.map_or(0.0, |mut gap| gap.take().1);
         self.observer.standard_errors(age)
     }
 
-    /// How often the observer began anew after a gap.
+    /// The number of restarts after gaps.
     pub(crate) fn restarts(&self) -> u64 {
         self.observer.restarts()
     }

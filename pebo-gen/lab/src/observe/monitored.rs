@@ -1,21 +1,21 @@
-//! An estimator beside which the information in its data is kept.
+//! An estimator with the Gramian of its data.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
 
-use super::estimator::Chosen;
-use super::excitation::{Information, Said};
+use super::estimator::PaddedEstimator;
+use super::excitation::{ComponentInformation, Gramian};
 use super::setup::{self, Covariance, Extension};
 
-/// An estimator of a padded model, with what its data say.
+/// An estimator of a padded model, with the Gramian of its data.
 #[derive(Clone, Debug)]
-pub(crate) struct Watched<const N: usize> {
-    estimator: Chosen<N>,
-    information: Information<N>,
+pub(crate) struct MonitoredEstimator<const N: usize> {
+    estimator: PaddedEstimator<N>,
+    information: Gramian<N>,
 }
 
-impl<const N: usize> Watched<N> {
-    /// The estimator with its settings, of so many unknowns before padding.
+impl<const N: usize> MonitoredEstimator<N> {
+    /// The estimator with its settings, for this number of unknowns before padding.
     pub(crate) fn new(settings: &setup::Estimator, unknowns: usize) -> Result<Self, Fault> {
         let forgetting = match settings {
             setup::Estimator::LeastSquares(Covariance { forgetting, .. })
@@ -25,16 +25,16 @@ impl<const N: usize> Watched<N> {
             }
             _ => 0.0,
         };
-        Ok(Self { estimator: Chosen::new(settings)?, information: Information::new(unknowns, forgetting) })
+        Ok(Self { estimator: PaddedEstimator::new(settings)?, information: Gramian::new(unknowns, forgetting) })
     }
 
-    /// What the data say of each component of the unknown.
-    pub(crate) fn said(&self) -> Said {
-        self.information.said()
+    /// The information of the data on each component of the unknown.
+    pub(crate) fn component_information(&self) -> ComponentInformation {
+        self.information.component_information()
     }
 }
 
-impl<const N: usize> Estimator<f64, N, N> for Watched<N> {
+impl<const N: usize> Estimator<f64, N, N> for MonitoredEstimator<N> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
         self.information.add(regressor, dt);
         self.estimator.advance(regressor, regressand, dt)
@@ -63,7 +63,7 @@ impl<const N: usize> Estimator<f64, N, N> for Watched<N> {
     }
 }
 
-impl<const N: usize> Uncertain<f64, N> for Watched<N> {
+impl<const N: usize> Uncertain<f64, N> for MonitoredEstimator<N> {
     fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
         self.estimator.covariance_root(dt)
     }
