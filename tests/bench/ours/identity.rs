@@ -8,7 +8,7 @@ use pebo_cas::domain::zero::decide;
 use pebo_cas::{Arena, Expr};
 use pebo_gen::analysis::Outcome;
 use pebo_gen::derive;
-use pebo_gen::model::formula::{Estimates, Places, parse_formula};
+use pebo_gen::model::formula::{Estimates, SpanMap, parse_formula};
 use pebo_gen::plant::{Scope, lower};
 use pebo_gen::source::Source;
 use serde_json::Value;
@@ -70,7 +70,7 @@ pub(crate) fn derivation(job: &Value) -> Result<Work, String> {
 }
 
 fn value(arena: &Arena, scope: &Scope, text: &str) -> Result<Expr, String> {
-    let formula = parse_formula(text, &Places::verbatim(text, 0), Estimates::Refused)
+    let formula = parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused)
         .map_err(|diagnostic| diagnostic.message.to_string())?;
     lower(arena, scope, &formula).map_err(|diagnostic| diagnostic.message.to_string())
 }

@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_is_shown_to_be_positive() {
+    fn a_period_is_provably_positive() {
         for (parameters, assume, period) in [
             ("", "", "2*pi"),
             ("", "", "360"),

@@ -286,9 +286,9 @@ fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> O
     let theta = arena.of_symbol(theta);
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (factor, symbol) in eta.iter().zip(symbols) {
-        if let Some(place) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
+        if let Some(index) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
             let symbol = arena.of_symbol(*symbol);
-            above.push(arena.mul(symbol, arena.of_symbol(symbols[place])));
+            above.push(arena.mul(symbol, arena.of_symbol(symbols[index])));
             below.push(arena.mul(symbol, symbol));
         }
     }

@@ -1,6 +1,6 @@
 //! A formula's text, cut into tokens.
 
-use super::{SpanMap, Relation, foreign};
+use super::{Relation, SpanMap, foreign};
 use crate::source::{Code, Diagnostic, Span};
 
 /// The kind of a token.

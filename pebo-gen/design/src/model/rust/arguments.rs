@@ -121,7 +121,12 @@ impl Arguments {
 }
 
 /// A list of names with a value for each.
-fn pairs(list: &MetaList, wrong: &str, example: &str, spans: &mut TokenSpans) -> Result<Vec<MetaNameValue>, Diagnostic> {
+fn pairs(
+    list: &MetaList,
+    wrong: &str,
+    example: &str,
+    spans: &mut TokenSpans,
+) -> Result<Vec<MetaNameValue>, Diagnostic> {
     let pairs = list.parse_args_with(Punctuated::<MetaNameValue, Token![,]>::parse_terminated);
     let pairs = pairs
         .map_err(|error| unsupported(spans.at(error.span()), wrong).help(format!("write for example `{example}`")))?;
