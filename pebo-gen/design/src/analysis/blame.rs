@@ -10,7 +10,7 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use pebo_cas::forms::tidy::shortest;
 
-/// More spans than this show nothing.
+/// More spans than this do not help.
 const MOST_SPANS: usize = 3;
 
 /// A summand of a rate, as it enters the derivative of a component of the transform.

@@ -104,7 +104,7 @@ fn refused(plant: &Plant, identity: &Formula, rate: Expr, witness: &Witness) -> 
         )
         .label(along(arena, rate))
         .note(witness.sentence(arena))
-        .note("the identities hold at this point, but this one does not stay true along the trajectory")
+        .note("the identities hold at this point, but this one is not invariant along the trajectory")
         .help("correct the identity, or the rates under `f_x` and `f_y`");
     };
     let name = arena.name(output.symbol);

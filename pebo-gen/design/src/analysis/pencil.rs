@@ -14,7 +14,7 @@ use pebo_cas::{Arena, Domain, Expr};
 
 use super::design::{Cascade, Claim, Verdict, Witness};
 
-/// A basis of the states that never show in the outputs, as columns; none if the plant is observable.
+/// A basis of the unobservable states, as columns; none if the plant is observable.
 ///
 /// At the parameters' values where they have one.
 pub(super) fn unobservable(plant: &Plant, domain: &Domain, linear: &Linear) -> Result<Vec<Vec<Expr>>, Obstacle> {

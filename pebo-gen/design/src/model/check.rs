@@ -274,7 +274,7 @@ impl DeclarationCheck<'_> {
         }
     }
 
-    /// An output tells something of the states; of a phi that is given, the regression says that it has no equation.
+    /// An output has to depend on the states; with a given phi, the regression reports that it has no equation.
     fn measured(&mut self, model: &Model) {
         let nothing = model.f_y.is_empty() && model.g_y.is_empty() && model.identities.is_empty();
         if self.diagnostics.has_errors() || model.class.is_some() || !model.phi.is_empty() || !nothing {

@@ -7,7 +7,7 @@ use pebo_cas::{Arena, Domain, Relation};
 
 use super::plant::Formula;
 
-/// Refuses a period that the values and assumptions do not show to be positive.
+/// Refuses a period that is not provably positive by the values and assumptions.
 pub(super) fn positive(arena: &Arena, domain: &Domain, period: Formula) -> Result<(), Diagnostic> {
     let shows = |expr, relation| domain.implies(arena, expr, relation);
     if shows(period.expr, Relation::Positive) {

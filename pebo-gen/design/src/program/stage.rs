@@ -174,7 +174,7 @@ impl Stages {
         Ok(best)
     }
 
-    /// The same with the opposites of these kept in their place.
+    /// The same, with the opposites of these kept.
     fn with_opposites(mut self, arena: &Arena, negated: &BTreeSet<Symbol>) -> Self {
         let opposites = negated.iter().map(|&symbol| (symbol, arena.neg(arena.of_symbol(symbol)))).collect();
         for term in &mut self.terms {

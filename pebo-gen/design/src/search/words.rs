@@ -99,7 +99,7 @@ impl Bound {
         format!("no {class} has a rank of dphi/dx above {rank} of {states}{location}{number}: {status}")
     }
 
-    /// The relations that every gradient satisfies at the point, with the equations that show each.
+    /// The relations that every gradient satisfies at the point, with the equations that prove each.
     pub fn certificate(&self, arena: &Arena) -> Vec<String> {
         let term = |(index, c): (usize, &Expr)| {
             let slope = format!("dphi/d{}", arena.name(self.x[index]));

@@ -130,17 +130,17 @@ fn rates_of_signals(plant: &Plant) -> BTreeMap<Symbol, Expr> {
     rates
 }
 
-/// The domain of the symbols that stay free, with the proof that every rate and identity vanishes there; else the
+/// The domain of the free symbols, with the proof that every rate and identity vanishes there; else the
 /// reason.
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
     let arena = &plant.arena;
     let there = domain
         .restricted(arena, values)
-        .ok_or_else(|| "no rest point that was looked at lies within the assumptions and conditions".to_owned())?;
+        .ok_or_else(|| "no equilibrium that was looked at lies within the assumptions and conditions".to_owned())?;
     match rates_of_signals(plant).iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
-            Err("the identities were not shown to hold where the plant rests".to_owned())
+            Err("the identities were not shown to hold at the equilibrium".to_owned())
         }
         None => Ok(there),
     }

@@ -158,7 +158,7 @@ mod tests {
         // By the assumptions: (1 - d)^2 on the open interval.
         let facts = gram_of("0 < d < 1", "p: (1 - d)*a + d*b, q: b");
         assert_eq!(facts.positive, Some(Positive::Assumed));
-        // By division: 1 + d sin(e), whose sign no rule sees, on the box that the assumptions state, and
+        // By division: 1 + d sin(e), whose sign no rule finds, on the box that the assumptions state, and
         // on a turn of e.
         let rates = "p: (1 + d*sin(e))*a + d*b, q: b";
         assert_eq!(gram_of("0 < d < 0.9, -3 < e < 3", rates).positive, Some(Positive::Assumed));

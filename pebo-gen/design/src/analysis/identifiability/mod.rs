@@ -316,7 +316,7 @@ fn hidden_from(
     Ok(HiddenDirections { directions: if special_values { special } else { general }, special_values })
 }
 
-/// Directions of the unknowns that no row sees.
+/// Directions of the unknowns that are unobservable in every row.
 struct HiddenDirections {
     directions: Vec<Vec<Expr>>,
     /// True if other values of the parameters leave fewer.

@@ -2,7 +2,7 @@
 //!
 //! In: a plant with `phi = M(y) x + s(y)`, M with more rows than columns. Out: `x = (M'M)^-1 M' (z - s)`, which
 //! divides by `det(M'M)`, a sum of squares, alone: it has a value wherever the columns of M are independent, while solving
-//! some of the rows may divide by what vanishes there.
+//! some of the rows may divide by zero there.
 
 use std::collections::{BTreeMap, BTreeSet};
 

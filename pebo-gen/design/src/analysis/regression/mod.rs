@@ -168,7 +168,7 @@ pub(super) fn prove(
             Err(obstacle) => obstacles.push((*index, *rate, *span, Some(obstacle))),
         }
     }
-    // A rate that an unmeasured signal moves tells nothing, unless combinations are free of it; the others have to do.
+    // A rate that an unmeasured signal moves is of no use, unless combinations are free of it; the others have to do.
     rows.retain(|row| !moved.contains(row));
     if rows.is_empty() {
         let outputs: Vec<usize> = moved.iter().map(|row| row.0).collect();

@@ -48,7 +48,7 @@ pub(in crate::analysis) fn separate(
         return Ok(None);
     }
     let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
-    // Functions of known signals stay as they are written, where no relation among them is needed: `tanh(5*u)` by
+    // Functions of known signals are kept as written, where no relation among them is needed: `tanh(5*u)` by
     // exponentials overflows where it is 1.
     let mut frozen = Frozen::new(arena, &unknown);
     let signals = frozen.freeze(&exprs);

@@ -209,7 +209,7 @@ fn a_regression_under_a_generalised_cascade_has_the_extension_for_z() {
     assert_eq!(regression.phi_1.concat().iter().map(print).collect::<Vec<_>>(), ["Psi11 + 2*Psi21", "Psi12 + 2*Psi22"]);
 }
 
-/// Nothing but a relation of the components tells of theta, and that no input tells more.
+/// Only a relation of the components identifies theta, and no input adds to it.
 #[test]
 fn a_relation_alone_is_a_regression_under_a_generalised_cascade_too() {
     let (_, derivation) = derive("x: [a]\ny: [y]\nu: [u]\nf_x: {a: u - a}\nphi: [a, 2*a]");

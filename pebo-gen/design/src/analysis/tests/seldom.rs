@@ -13,7 +13,7 @@ fn a_listed_sign_excludes_zeros() {
     assert_eq!((found.1.outcome, conditions(&found)), (Outcome::Accepted, vec!["r > 0".to_owned()]));
 }
 
-/// The second vanishes where the first does, which the first, with a denominator of any sign, does not show.
+/// The second vanishes where the first does; the denominator of the first has any sign.
 #[test]
 fn factors_with_common_zeros_are_listed_once() {
     let found = derive("x: [p]\ny: [r]\nu: [v]\nf_x: {p: v/(1/r - 1) + 1/(r - 1)}\nf_y: {r: p}\nphi: [p]");

@@ -1,7 +1,7 @@
 //! The expression language.
 //!
-//! In: a text and the [`SpanMap`] of its bytes in the file. Out: a [`Formula`], a tree with a span on every node; or one
-//! diagnostic, for the first mistake.
+//! In: a text and the [`SpanMap`] of its bytes in the file. Out: a [`Formula`], a tree with a span on every node; or
+//! one diagnostic, for the first mistake.
 //!
 //! ```text
 //! comparison  formula (relation formula)+          relation: < <= > >= !=

@@ -281,7 +281,7 @@ fn spans_survive_the_scalar_styles_of_yaml() {
         let names: Vec<&str> = formula.names().into_iter().map(|(_, span)| source.slice(span)).collect();
         assert_eq!(names, ["a", "bb", "c"], "{raw}");
     }
-    // An escape: the whole scalar stands for its parts.
+    // An escape: its parts have the span of the whole scalar.
     let source = Source::new("m", r#""a\x2bb""#).expect("it is small");
     let whole = Span::new(0, 8);
     assert_eq!(SpanMap::align("a+b", whole, &source).span(0, 1), whole);

@@ -10,7 +10,8 @@
 //! of the result keeps the formula of its computation. Rust's own rules hold: an accepted model means what the compiled
 //! function computes, but for rounding.
 //!
-//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of tokens.
+//! There is no text here: a [`Span`](crate::source::Span) is a range of [`TokenSpans`], each of which is a run of
+//! tokens.
 
 mod spans;
 

@@ -44,7 +44,7 @@ pub(super) fn read(
     spans: &mut TokenSpans,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
-    // The first place is the default of a diagnostic.
+    // The first span is the default of a diagnostic.
     let name = Spanned { span: spans.of(&module.ident), value: module.ident.unraw().to_string() };
     if module.content.is_none() {
         diagnostics.push(

@@ -6,9 +6,9 @@
 //! ```
 //!
 //! The rate's independence of x, of unmeasured signals and of inputs is a system of linear equations
-//! ([`super::gradient`]). Their completion bounds the rank of dphi/dx everywhere but at single points, and where it ends
-//! flat the number of transforms is known, even if they have no closed form. The parameters have values that are named
-//! with it. Where each state is driven alone by inputs, every smooth transform is affine in x.
+//! ([`super::gradient`]). Their completion bounds the rank of dphi/dx everywhere but at single points, and where it
+//! ends flat the number of transforms is known, even if they have no closed form. The parameters have values that are
+//! named with it. Where each state is driven alone by inputs, every smooth transform is affine in x.
 //!
 //! Holds after: the result is proved by exact algebra, if the kernels of the equations are independent: symbols, and
 //! sines, cosines, exponentials, logarithms and roots of rational functions are (see [`pebo_cas::tower`]). The

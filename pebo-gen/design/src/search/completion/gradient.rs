@@ -1,8 +1,8 @@
 //! The differential equations for the gradient of a transform with a plain cascade.
 //!
-//! In: a plant, and rates of its signals. Out: linear partial differential equations of first order for unknown functions,
-//! over a field that holds the derivatives of its elements. Of `T(y) x + s(y)` they hold the functions T and the gradient
-//! of s, over the functions of y; of any smooth phi(x, y) its gradient, over those of x and y.
+//! In: a plant, and rates of its signals. Out: linear partial differential equations of first order for unknown
+//! functions, over a field that holds the derivatives of its elements. Of `T(y) x + s(y)` they hold the functions T and
+//! the gradient of s, over the functions of y; of any smooth phi(x, y) its gradient, over those of x and y.
 
 use std::collections::{BTreeMap, BTreeSet};
 

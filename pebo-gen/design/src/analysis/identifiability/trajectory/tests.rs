@@ -71,7 +71,7 @@ fn a_plant_that_moves_may_need_no_input() {
     assert_eq!(
         of(frame),
         [
-            "the unknowns are identified without excitation by the inputs, even at rest, but for these motions",
+            "the unknowns are identified without excitation by the inputs, even at rest, but for these trajectories",
             "while `w = 0`, only `z1` is identified"
         ]
     );
@@ -87,7 +87,7 @@ fn losses_under_constant_inputs_at_a_value_of_one_or_of_a_parameter_are_listed()
     let sum = "parameters: [k, m]\nassume: [k > 0, m > 0, v > 0, w > 0]\nx: [a, b]\ny: [r]\nu: [v, w]\n\
                f_x: {a: -k*a, b: -m*b}\nf_y: {r: v*a + w*b}\nphi: [a, b]";
     let lines = of(sum);
-    assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
+    assert!(lines[0].ends_with("even at rest, but for these trajectories"), "{lines:?}");
     assert!(lines[1].starts_with("while the inputs are constant and `k = m`, only"), "{lines:?}");
     // q = v is invariant, while r moves.
     let pursuit = "x: [p, s]\ny: [r, q]\nu: [v]\nf_x: {p: -v*p, s: -q*s}\nf_y: {r: p + s, q: q - v}\nphi: [p, s]";
@@ -97,7 +97,7 @@ fn losses_under_constant_inputs_at_a_value_of_one_or_of_a_parameter_are_listed()
 
 #[test]
 fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
-    let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these motions";
+    let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these trajectories";
     let cells = |rates: &str| format!("parameters: {{k: 2}}\nx: [a, b]\ny: [r]\nu: [v, w]\n{rates}\nphi: [a, b]");
     let report = |rates: &str| of(&cells(&format!("{rates}\nf_y: {{r: a + b}}")));
     assert_eq!(report("f_x: {a: v*a, b: w*b}"), [but, "while `v = w`, only `z1 + z2` is identified"]);
@@ -125,7 +125,7 @@ fn losses_by_several_signals_at_rest_are_listed() {
 /// No trajectory is passed over in silence: a statement on all trajectories provably holds on all.
 #[test]
 fn trajectories_kept_by_several_signals_are_listed_or_not_claimed() {
-    let almost = "the unknowns are identified on almost every motion, also with constant inputs";
+    let almost = "the unknowns are identified on almost every trajectory, also with constant inputs";
     // A limit cycle, on which q^2 + w^2 is 1.
     let cycle = "x: [p, s]\ny: [q, w, r]\nf_x: {p: 0, s: 0}\nphi: [p, s]\n\
                  f_y: {q: w + q*(1 - q^2 - w^2), w: -q + w*(1 - q^2 - w^2), r: p + s*(q^2 + w^2)}";
