@@ -263,7 +263,7 @@ mod tests {
         let circle = "x: [c, s]\ny: [q]\nu: [v, w]\nidentities: [c^2 + s^2 - 1]\n\
                       f_x: {c: -s*w, s: c*w}\nf_y: {q: v*c}\nphi: [c, s]";
         assert_eq!(at(circle), "c = 0, s = 1, w = 0");
-        let motor = std::fs::read_to_string("../models/motor_flux.yaml").unwrap();
+        let motor = std::fs::read_to_string("../../models/motor_flux.yaml").unwrap();
         let lines = motor.lines().filter(|line| !line.starts_with("model:")).collect::<Vec<_>>().join("\n");
         assert_eq!(at(&lines), "l1 = lambda_m + L*v1/R, l2 = L*v2/R, i1 = v1/R, i2 = v2/R, omega = 0");
     }
