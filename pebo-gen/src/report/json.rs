@@ -11,7 +11,7 @@ use pebo_design::analysis::{
     Regression, Witness,
 };
 use pebo_design::plant::Plant;
-use pebo_design::source::{Diagnostic, Located, Source};
+use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
 
 /// The object of one model, which [`CHECK_SCHEMA`](super::CHECK_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]
@@ -39,7 +39,7 @@ pub struct Report {
     cost: Option<CostReport>,
     /// Conditions of the proofs besides the assumptions, as comparisons with zero.
     conditions: Vec<String>,
-    diagnostics: Vec<Located>,
+    diagnostics: Vec<LocatedDiagnostic>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -245,8 +245,8 @@ impl Report {
     }
 }
 
-fn located(diagnostics: &[Diagnostic], source: &Source) -> Vec<Located> {
-    diagnostics.iter().map(|d| Located::new(d, source)).collect()
+fn located(diagnostics: &[Diagnostic], source: &Source) -> Vec<LocatedDiagnostic> {
+    diagnostics.iter().map(|d| LocatedDiagnostic::new(d, source)).collect()
 }
 
 fn matrix(arena: &Arena, rows: &[Vec<Expr>]) -> Vec<Vec<String>> {

@@ -8,7 +8,7 @@ use pebo_cas::Arena;
 use pebo_design::plant::Plant;
 use pebo_design::search::words::assumed;
 use pebo_design::search::{Bound, Candidate, Search};
-use pebo_design::source::{Diagnostic, Located, Source};
+use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
 
 /// The object of one search, which [`SOLVE_SCHEMA`](super::SOLVE_SCHEMA) describes.
 #[derive(Clone, Debug, Serialize)]
@@ -30,7 +30,7 @@ pub struct SearchReport {
     /// Transforms that the bounds of a verdict `none` do not exclude.
     not_excluded: Option<&'static str>,
     tried: Vec<String>,
-    diagnostics: Vec<Located>,
+    diagnostics: Vec<LocatedDiagnostic>,
 }
 
 /// Signs of states, and the transform that would be accepted with them.
@@ -103,7 +103,7 @@ impl SearchReport {
             bound_generalised: None,
             not_excluded: None,
             tried: Vec::new(),
-            diagnostics: diagnostics.iter().map(|d| Located::new(d, source)).collect(),
+            diagnostics: diagnostics.iter().map(|d| LocatedDiagnostic::new(d, source)).collect(),
         }
     }
 

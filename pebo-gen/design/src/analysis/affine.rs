@@ -95,7 +95,7 @@ mod tests {
     use crate::source::Source;
 
     #[test]
-    fn a_redundant_component_neither_hides_nor_makes_a_bend() {
+    fn a_redundant_component_neither_hides_nor_makes_curvature() {
         for phi in ["a, b", "a, 2*a, b", "a, b, a - y*b"] {
             let text =
                 format!("model: m\nx: [a, b]\ny: [y]\nu: [u]\nf_x: {{a: 0, b: 0}}\nf_y: {{y: a}}\nphi: [{phi}]\n");
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_component_that_an_output_gives_hides_no_bend() {
+    fn a_component_given_by_an_output_hides_no_curvature() {
         let text =
             "model: m\nx: [a, b]\ny: [y]\nu: [u]\nw: [v]\nf_x: {a: u - b, b: a - v}\ng_y: {y: u - a}\nphi: [a, b]\n";
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();

@@ -10,8 +10,8 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use pebo_cas::forms::tidy::shortest;
 
-/// More spans than this show nothing.
-const MOST_PLACES: usize = 3;
+/// More spans than this do not help.
+const MOST_SPANS: usize = 3;
 
 /// A summand of a rate, as it enters the derivative of a component of the transform.
 struct Share {
@@ -45,7 +45,7 @@ pub(super) fn cascade(plant: &Plant, domain: &Domain, index: usize, refusal: Dia
         })
     };
     let left: Vec<&Share> = shares.iter().filter(|share| !cancels(share)).collect();
-    if left.len() > MOST_PLACES {
+    if left.len() > MOST_SPANS {
         return refusal;
     }
     left.into_iter().fold(refusal, |refusal, share| {
@@ -61,5 +61,5 @@ pub(super) fn summands(plant: &Plant, output: usize, holds: impl Fn(Expr) -> boo
     let terms = plant.terms.get(&output.symbol).map_or(&[][..], Vec::as_slice);
     let found: Vec<Formula> = terms.iter().copied().filter(|term| holds(term.expr)).collect();
     let whole = || output.rate.into_iter().collect();
-    if found.is_empty() || found.len() > MOST_PLACES { whole() } else { found }
+    if found.is_empty() || found.len() > MOST_SPANS { whole() } else { found }
 }

@@ -155,8 +155,7 @@ pub struct Regression {
     pub theta: Vec<Expr>,
     /// The symbols eta1..
     pub eta_symbols: Vec<Symbol>,
-    /// States that the outputs show only up to multiples of a constant, with that constant, without being declared
-    /// angles.
+    /// States that are identifiable only up to multiples of a constant, with that constant, but no declared angles.
     pub steps: Vec<(Symbol, Expr)>,
     /// The other form of the relation that the regression is made of, if it has one.
     pub alternative: Option<Alternative>,

@@ -75,7 +75,7 @@ pub(super) fn static_form(
     found: &mut Vec<Diagnostic>,
     before: usize,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
-    let stands = |regression: &Regression| match regression.kind {
+    let is_static = |regression: &Regression| match regression.kind {
         RegressionKind::Static => true,
         RegressionKind::Dynamic => false,
         RegressionKind::Implicit => {
@@ -84,7 +84,7 @@ pub(super) fn static_form(
             held.into_iter().any(|(known, factor)| nothing(known) && factor.iter().all(nothing))
         }
     };
-    if !plant.wants(RelationForm::Static) || given.0.result.as_ref().is_none_or(stands) {
+    if !plant.wants(RelationForm::Static) || given.0.result.as_ref().is_none_or(is_static) {
         return given;
     }
     let mut said = Vec::new();

@@ -104,12 +104,12 @@ fn refused(plant: &Plant, identity: &Formula, rate: Expr, witness: &Witness) -> 
         )
         .label(along(arena, rate))
         .note(witness.sentence(arena))
-        .note("the identities hold at this point, but this one does not stay true along the trajectory")
+        .note("the identities hold at this point, but this one is not invariant along the trajectory")
         .help("correct the identity, or the rates under `f_x` and `f_y`");
     };
     let name = arena.name(output.symbol);
-    let twice = output.value.is_some_and(|value| value.expr == given.expr);
-    let (message, help) = if twice {
+    let given_twice = output.value.is_some_and(|value| value.expr == given.expr);
+    let (message, help) = if given_twice {
         (
             format!("`g_y` and `f_y` have the same formula for `{name}`, which cannot be both its value and its rate"),
             format!(
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_with_another_rate_is_told_from_an_identity_that_does_not_last() {
+    fn a_value_with_another_rate_differs_from_an_identity_that_is_not_invariant() {
         let [message, help] = said("g_y: {p: 2*a}\nf_y: {p: 2*a}");
         assert!(message.starts_with("`g_y` and `f_y` have the same formula for `p`"), "{message}");
         assert!(help.contains("`f_y` its time derivative"), "{help}");

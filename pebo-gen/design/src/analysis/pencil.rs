@@ -14,7 +14,7 @@ use pebo_cas::{Arena, Domain, Expr};
 
 use super::design::{Cascade, Claim, Verdict, Witness};
 
-/// A basis of the states that never show in the outputs, as columns; none if the plant is observable.
+/// A basis of the unobservable states, as columns; none if the plant is observable.
 ///
 /// At the parameters' values where they have one.
 pub(super) fn unobservable(plant: &Plant, domain: &Domain, linear: &Linear) -> Result<Vec<Vec<Expr>>, Obstacle> {
@@ -30,7 +30,7 @@ pub(super) fn unobservable(plant: &Plant, domain: &Domain, linear: &Linear) -> R
 }
 
 /// The unobservable directions, as a sentence; none if the plant is observable.
-pub(super) fn blindness(plant: &Plant, domain: &Domain, linear: &Linear) -> Result<Option<String>, Obstacle> {
+pub(super) fn unobservable_states(plant: &Plant, domain: &Domain, linear: &Linear) -> Result<Option<String>, Obstacle> {
     let arena = &plant.arena;
     let basis = unobservable(plant, domain, linear)?;
     let [vector, others @ ..] = basis.as_slice() else { return Ok(None) };
@@ -124,7 +124,7 @@ fn refused(
 ) -> Result<Diagnostic, Obstacle> {
     let arena = &plant.arena;
     let entries: Vec<String> = vector.iter().map(|e| arena.print(*e)).collect();
-    let observability = match blindness(plant, domain, linear)? {
+    let observability = match unobservable_states(plant, domain, linear)? {
         None => "the plant is observable (PBH), which does not give a transform (Proposition 2, claim C1)".to_owned(),
         Some(blind) => blind,
     };

@@ -87,10 +87,10 @@ fn about((low, high): (f64, f64)) -> String {
 
 /// A few significant digits.
 fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude == 0.0 {
+    let size = value.abs();
+    if size == 0.0 {
         "0".to_owned()
-    } else if (1e-3..1e6).contains(&magnitude) {
+    } else if (1e-3..1e6).contains(&size) {
         format!("{}", (value * 1e6).round() / 1e6)
     } else {
         format!("{value:.4e}")
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_told_as_a_reader_would_write_them() {
+    fn values_are_printed_as_a_reader_would_write_them() {
         assert_eq!(about((0.0, 0.0)), "0");
         assert_eq!(about((9.0, 9.0)), "about 9");
         assert_eq!(about((-1.0, 0.0)), "between -1 and 0");

@@ -1,7 +1,7 @@
 //! The words of verdicts and kinds: one for each case, the same in JSON, text and the header of emitted code.
 //!
 //! In: a case. Out: its word, for programs and people. A sentence around a word is its author's own. The other tables
-//! of words stand beside their enumerations, as readers of input need them too: [`Class::name`](super::Class::name),
+//! of words are beside their enumerations, as readers of input need them too: [`Class::name`](super::Class::name),
 //! [`Relation::sign`](pebo_cas::Relation::sign) and [`Code::name`](crate::source::Code::name).
 
 use crate::plant::Plant;

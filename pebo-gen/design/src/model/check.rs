@@ -22,7 +22,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     let measured: HashSet<&str> = model.y.iter().map(|output| output.value.as_str()).collect();
     let both = model.x.iter().map(|state| state.value.as_str()).filter(|state| measured.contains(state));
     let simulated = model.simulation.is_some() || model.recording.is_some();
-    let mut pass = Pass { diagnostics, simulated, both: both.collect() };
+    let mut pass = DeclarationCheck { diagnostics, simulated, both: both.collect() };
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
     pass.circles(&model.define);
@@ -113,7 +113,7 @@ impl<'a> Group<'a> {
     }
 }
 
-struct Pass<'a> {
+struct DeclarationCheck<'a> {
     diagnostics: &'a mut Diagnostics,
     /// Names among the states and the outputs.
     both: HashSet<&'a str>,
@@ -121,7 +121,7 @@ struct Pass<'a> {
     simulated: bool,
 }
 
-impl Pass<'_> {
+impl DeclarationCheck<'_> {
     fn name(&mut self, name: &Spanned<String>) {
         self.diagnostics.keep(admit(&name.value, name.span, false));
     }
@@ -274,7 +274,7 @@ impl Pass<'_> {
         }
     }
 
-    /// An output tells something of the states; of a phi that is given, the regression says that it has no equation.
+    /// An output has to depend on the states; with a given phi, the regression reports that it has no equation.
     fn measured(&mut self, model: &Model) {
         let nothing = model.f_y.is_empty() && model.g_y.is_empty() && model.identities.is_empty();
         if self.diagnostics.has_errors() || model.class.is_some() || !model.phi.is_empty() || !nothing {
@@ -433,11 +433,11 @@ impl Pass<'_> {
 
     /// Poles are in the left half of the plane, and each there once.
     fn poles(&mut self, poles: &[Spanned<Decimal>]) {
-        for (place, pole) in poles.iter().enumerate() {
+        for (index, pole) in poles.iter().enumerate() {
             let value = pole.value.to_f64();
             let message = if value >= 0.0 {
                 "a pole must be negative"
-            } else if poles[..place].iter().any(|other| other.value.to_f64().total_cmp(&value).is_eq()) {
+            } else if poles[..index].iter().any(|other| other.value.to_f64().total_cmp(&value).is_eq()) {
                 "this pole is there twice"
             } else {
                 continue;

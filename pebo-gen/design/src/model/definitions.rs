@@ -10,7 +10,7 @@ use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, listed, quoted};
 
 /// More spans of a circle than these make its diagnostic unreadable.
-const MOST_PLACES: usize = 8;
+const MOST_SPANS: usize = 8;
 
 /// An order of definitions, each after the ones that it uses, and the circles that have none.
 ///
@@ -32,12 +32,12 @@ enum Mark {
 
 impl Order {
     pub(super) fn of(definitions: &[Entry<Formula>]) -> Self {
-        let places: HashMap<&str, usize> =
-            definitions.iter().enumerate().map(|(place, entry)| (entry.name.value.as_str(), place)).collect();
-        let uses = |place: usize| -> Vec<usize> {
-            let names = definitions[place].value.names();
+        let indices: HashMap<&str, usize> =
+            definitions.iter().enumerate().map(|(index, entry)| (entry.name.value.as_str(), index)).collect();
+        let uses = |index: usize| -> Vec<usize> {
+            let names = definitions[index].value.names();
             // The last of them is looked at first.
-            names.iter().rev().filter_map(|(name, _)| places.get(name).copied()).collect()
+            names.iter().rev().filter_map(|(name, _)| indices.get(name).copied()).collect()
         };
         let mut order = Self { positions: Vec::with_capacity(definitions.len()), circles: Vec::new() };
         let mut marks = vec![Mark::New; definitions.len()];
@@ -48,8 +48,8 @@ impl Order {
             marks[first] = Mark::Open;
             // A chain of definitions may be as long as the file: the path is on the heap.
             let mut path = vec![(first, uses(first))];
-            while let Some((place, waiting)) = path.last_mut() {
-                let place = *place;
+            while let Some((index, waiting)) = path.last_mut() {
+                let index = *index;
                 match waiting.pop() {
                     Some(next) if marks[next] == Mark::New => {
                         marks[next] = Mark::Open;
@@ -61,8 +61,8 @@ impl Order {
                     }
                     Some(_) => {}
                     None => {
-                        marks[place] = Mark::Done;
-                        order.positions.push(place);
+                        marks[index] = Mark::Done;
+                        order.positions.push(index);
                         path.pop();
                     }
                 }
@@ -76,13 +76,13 @@ impl Order {
 pub(super) fn sorted(definitions: Vec<Entry<Formula>>) -> Vec<Entry<Formula>> {
     let order = Order::of(&definitions);
     let mut waiting: Vec<Option<Entry<Formula>>> = definitions.into_iter().map(Some).collect();
-    order.positions.into_iter().filter_map(|place| waiting[place].take()).collect()
+    order.positions.into_iter().filter_map(|index| waiting[index].take()).collect()
 }
 
 /// A diagnostic for each circle of definitions.
 pub(super) fn circles(definitions: &[Entry<Formula>]) -> Vec<Diagnostic> {
     let order = Order::of(definitions);
-    let names = |circle: &Vec<usize>| circle.iter().map(|place| &definitions[*place].name).collect::<Vec<_>>();
+    let names = |circle: &Vec<usize>| circle.iter().map(|index| &definitions[*index].name).collect::<Vec<_>>();
     order.circles.iter().map(|circle| refusal(&names(circle))).collect()
 }
 
@@ -94,7 +94,7 @@ fn refusal(circle: &[&Spanned<String>]) -> Diagnostic {
     };
     let uses = |at: usize| format!("uses {}", name(at + 1));
     let diagnostic = Diagnostic::error(Code::CircularDefinition, circle[0].span, message).label(uses(0));
-    let others = circle.iter().enumerate().skip(1).take(MOST_PLACES);
+    let others = circle.iter().enumerate().skip(1).take(MOST_SPANS);
     let diagnostic = others.fold(diagnostic, |diagnostic, (at, name)| diagnostic.also(name.span, uses(at)));
     diagnostic.help("define one of them by declared quantities, or declare it as a parameter or state")
 }
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_used_stands_first_and_the_rest_stays_in_its_order() {
+    fn definitions_follow_the_ones_they_use_and_else_keep_their_order() {
         for (written, expected) in [
             ("{a: b, b: y^2}", vec!["b", "a"]),
             ("{a: y, b: y, c: y}", vec!["a", "b", "c"]),

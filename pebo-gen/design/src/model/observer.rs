@@ -88,7 +88,7 @@ pub struct Rebase {
 
 impl Rebase {
     /// The span.
-    pub fn place(&self) -> Option<Span> {
+    pub fn span(&self) -> Option<Span> {
         self.written().next().map(|(_, number)| number.span)
     }
 
@@ -101,11 +101,11 @@ impl Rebase {
     /// Reports several of them at once.
     fn check(&self, diagnostics: &mut Diagnostics) {
         let mut written = self.written();
-        let (Some((first, place)), Some((second, other))) = (written.next(), written.next()) else { return };
+        let (Some((first, span)), Some((second, other))) = (written.next(), written.next()) else { return };
         let message = format!("`rebase` has both `{first}` and `{second}`");
         diagnostics.push(
             Diagnostic::error(Code::SettingConflict, other.span, message)
-                .also(place.span, format!("`{first}` is here"))
+                .also(span.span, format!("`{first}` is here"))
                 .help("keep one of them: each of the forms alone keeps the extension from running away"),
         );
     }
@@ -229,7 +229,7 @@ impl Observer {
     /// Tests whether the author chose the numbers of an estimator, beside data on sensors, start and disturbances.
     pub fn has_gains(&self) -> bool {
         let written = self.filter.is_some() || self.window.is_some() || self.estimator.is_some();
-        self.known().is_none() && (written || SETTINGS.iter().any(|key| self.place(key).is_some()))
+        self.known().is_none() && (written || SETTINGS.iter().any(|key| self.span_of(key).is_some()))
     }
 
     /// The first of the keys that need an observer of known numbers, with its span.
@@ -243,7 +243,7 @@ impl Observer {
     }
 
     /// The span of a setting of estimators, if it is written.
-    pub fn place(&self, key: &str) -> Option<Span> {
+    pub fn span_of(&self, key: &str) -> Option<Span> {
         let all = |values: &[Spanned<Decimal>]| Some(values.first()?.span.to(values.last()?.span));
         let one = |value: &Option<Spanned<Decimal>>| value.as_ref().map(|value| value.span);
         match key {
@@ -266,8 +266,8 @@ impl Observer {
         self.contradictions(diagnostics);
         for key in SETTINGS.iter().copied().filter(|_| self.known().is_none()) {
             let estimator = self.estimator();
-            if let Some(place) = self.place(key).filter(|_| known && !estimator.has(key)) {
-                diagnostics.push(self.stranger(key, place));
+            if let Some(span) = self.span_of(key).filter(|_| known && !estimator.has(key)) {
+                diagnostics.push(self.stranger(key, span));
             }
         }
         let mut within = |number: &Spanned<Decimal>, admitted: fn(f64) -> bool, message: &str, help: &str| {
@@ -358,10 +358,10 @@ impl Observer {
         };
         let instead = [("covariance", &self.start, "start"), ("process_noise", &self.disturbance, "disturbance")];
         for (gain, entries, name) in instead {
-            if let (Some(place), Some(first)) = (self.place(gain), entries.first()) {
+            if let (Some(span), Some(first)) = (self.span_of(gain), entries.first()) {
                 let message = format!("`{gain}` stands beside the `{name}` that it would be derived from");
                 diagnostics.push(
-                    Diagnostic::error(Code::SettingConflict, place, message)
+                    Diagnostic::error(Code::SettingConflict, span, message)
                         .also(first.name.span, format!("`{name}` begins here"))
                         .help(format!("remove one of them: `{name}` is in units of the states, `{gain}` of phi")),
                 );
@@ -369,7 +369,7 @@ impl Observer {
         }
         let others = ["gain", "regressor_gain", "forgetting", "normalisation", "clip", "period"];
         let mut strangers: Vec<(&str, Span)> =
-            others.into_iter().filter_map(|key| Some((key, self.place(key)?))).collect();
+            others.into_iter().filter_map(|key| Some((key, self.span_of(key)?))).collect();
         let operators = [("filter", &self.filter), ("window", &self.window)];
         strangers.extend(operators.iter().filter_map(|(key, number)| Some((*key, number.as_ref()?.span))));
         strangers.extend(
@@ -379,7 +379,7 @@ impl Observer {
         );
         let other = self.estimator.as_ref().filter(|estimator| estimator.value != Estimator::LeastSquares);
         strangers.extend(other.map(|estimator| ("estimator", estimator.span)));
-        for (stranger, place) in strangers {
+        for (stranger, span) in strangers {
             let message = format!("`{stranger}` stands beside `{key}`, from which the observer is derived");
             let help = match stranger {
                 "bounds" => "bound the states instead, by `within`".to_owned(),
@@ -387,7 +387,7 @@ impl Observer {
                 _ => format!("remove `{stranger}`: the observer is least squares, whose numbers are derived"),
             };
             diagnostics.push(
-                Diagnostic::error(Code::SettingConflict, place, message)
+                Diagnostic::error(Code::SettingConflict, span, message)
                     .also(known, format!("`{key}` is here"))
                     .help(help),
             );
@@ -408,12 +408,12 @@ impl Observer {
     }
 
     /// A setting that the estimator does not have.
-    fn stranger(&self, key: &str, place: Span) -> Diagnostic {
+    fn stranger(&self, key: &str, span: Span) -> Diagnostic {
         let estimator = self.estimator();
         let message = format!("the estimator `{}` has no `{key}`", estimator.name());
         let others = Estimator::ALL.into_iter().filter(|other| other.has(key)).map(Estimator::name);
         let own = estimator.needs().iter().chain(estimator.admits()).copied();
-        let diagnostic = Diagnostic::error(Code::SettingConflict, place, message)
+        let diagnostic = Diagnostic::error(Code::SettingConflict, span, message)
             .note(format!("`{key}` is a setting of {}", listed(others)));
         match &self.estimator {
             Some(estimator) => diagnostic.also(estimator.span, "the estimator is chosen here").help(format!(

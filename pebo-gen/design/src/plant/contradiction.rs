@@ -54,16 +54,16 @@ pub(super) fn find(arena: &Arena, assumptions: &[Assumption], parameters: &[Para
             quantities.entry(quantity).or_default().tighten(bound, slope.is_negative());
         }
     }
-    let mut shown = false;
+    let mut is_reported = false;
     for (quantity, bounds) in &quantities {
         let (Some(low), Some(high)) = (bounds.low, bounds.high) else { continue };
         let relation = if low.strict || high.strict { Relation::Positive } else { Relation::NonNegative };
         if arena.fails_of_number((arena.sub(high.value, low.value), relation)) {
             problems.push(contradictory(arena, *quantity, &low, &high));
-            shown = true;
+            is_reported = true;
         }
     }
-    if !shown && let Some(assumption) = excluded(arena, assumptions, &values) {
+    if !is_reported && let Some(assumption) = excluded(arena, assumptions, &values) {
         problems.push(impossible(arena, assumption, assumptions.len() == 1));
     }
 }
@@ -98,11 +98,11 @@ fn vanishes(arena: &Arena, domain: &Domain, expr: Expr) -> bool {
 }
 
 fn impossible(arena: &Arena, assumption: &Assumption, alone: bool) -> Diagnostic {
-    let shown = format!("`{} {}`", arena.print(assumption.expr), assumption.relation.sign());
+    let printed = format!("`{} {}`", arena.print(assumption.expr), assumption.relation.sign());
     let (message, label) = if alone {
-        ("no values satisfy this assumption", format!("no values have {shown}"))
+        ("no values satisfy this assumption", format!("no values have {printed}"))
     } else {
-        ("no values satisfy the assumptions together", format!("the other assumptions exclude {shown}"))
+        ("no values satisfy the assumptions together", format!("the other assumptions exclude {printed}"))
     };
     Diagnostic::error(Code::ContradictoryAssumptions, assumption.span, message).label(label).help("correct one of them")
 }

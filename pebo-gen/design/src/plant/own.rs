@@ -92,18 +92,18 @@ mod tests {
             let generated = families.into_iter().flatten().chain(plant.psi.iter().flatten()).copied();
             let all: Vec<Symbol> = declared.into_iter().chain(generated).collect();
             let distinct: BTreeSet<Symbol> = all.iter().copied().collect();
-            let shown: BTreeSet<String> = all.iter().map(|symbol| plant.arena.name(*symbol)).collect();
-            assert_eq!((distinct.len(), shown.len()), (all.len(), all.len()), "{components}, {parameters}");
+            let printed: BTreeSet<String> = all.iter().map(|symbol| plant.arena.name(*symbol)).collect();
+            assert_eq!((distinct.len(), printed.len()), (all.len(), all.len()), "{components}, {parameters}");
             assert_eq!(plant.arena.name(plant.eta(1)[0]), eta, "{parameters}");
         }
     }
 
     #[test]
-    fn entries_of_the_fundamental_matrix_are_shown_with_a_mark_beyond_nine() {
-        let shown = |plant: &Plant, row: usize, column: usize| plant.arena.name(plant.psi[row - 1][column - 1]);
+    fn entries_of_the_fundamental_matrix_have_a_mark_beyond_nine() {
+        let printed = |plant: &Plant, row: usize, column: usize| plant.arena.name(plant.psi[row - 1][column - 1]);
         let nine = plant(9, "a");
-        assert_eq!((shown(&nine, 1, 9), shown(&nine, 9, 1)), ("Psi19".to_owned(), "Psi91".to_owned()));
+        assert_eq!((printed(&nine, 1, 9), printed(&nine, 9, 1)), ("Psi19".to_owned(), "Psi91".to_owned()));
         let eleven = plant(11, "a");
-        assert_eq!((shown(&eleven, 1, 11), shown(&eleven, 11, 1)), ("Psi1_11".to_owned(), "Psi11_1".to_owned()));
+        assert_eq!((printed(&eleven, 1, 11), printed(&eleven, 11, 1)), ("Psi1_11".to_owned(), "Psi11_1".to_owned()));
     }
 }

@@ -7,7 +7,7 @@ use pebo_cas::{Arena, Domain, Relation};
 
 use super::plant::Formula;
 
-/// Refuses a period that the values and assumptions do not show to be positive.
+/// Refuses a period that is not provably positive by the values and assumptions.
 pub(super) fn positive(arena: &Arena, domain: &Domain, period: Formula) -> Result<(), Diagnostic> {
     let shows = |expr, relation| domain.implies(arena, expr, relation);
     if shows(period.expr, Relation::Positive) {
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_is_shown_to_be_positive() {
+    fn a_period_is_provably_positive() {
         for (parameters, assume, period) in [
             ("", "", "2*pi"),
             ("", "", "360"),

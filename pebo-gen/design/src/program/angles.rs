@@ -51,8 +51,8 @@ impl Angles {
         let mut known: FxHashSet<Expr> = FxHashSet::default();
         // All angles composed of known ones, before another call.
         while !angles.is_empty() {
-            let place = angles.iter().position(|angle| parts.contains_key(angle)).unwrap_or(0);
-            let newest = angles.remove(place);
+            let index = angles.iter().position(|angle| parts.contains_key(angle)).unwrap_or(0);
+            let newest = angles.remove(index);
             known.insert(newest);
             for angle in &angles {
                 if !parts.contains_key(angle)

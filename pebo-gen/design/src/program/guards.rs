@@ -49,13 +49,13 @@ pub(super) fn guarded(
     users: &[&Program],
     (checked, wanted): (&Program, &[Option<Relation>]),
 ) -> GuardedProgram {
-    let (mut program, places) = checked.joined(setup);
-    let place = |operand| match operand {
-        Operand::Result(index) => places[index],
+    let (mut program, joined_operands) = checked.joined(setup);
+    let joined_operand = |operand| match operand {
+        Operand::Result(index) => joined_operands[index],
         Operand::Constant(_) | Operand::Input(_) => operand,
     };
     let compared = |operand: Operand| {
-        let mut same = checked.outputs.iter().zip(wanted).filter(|(output, _)| **output == place(operand));
+        let mut same = checked.outputs.iter().zip(wanted).filter(|(output, _)| **output == joined_operand(operand));
         same.find_map(|(_, relation)| *relation).map(ValueFacts::sure)
     };
     let formulas = setup.formulas(arena);
@@ -72,7 +72,7 @@ pub(super) fn guarded(
             Operand::Constant(_) => return,
         };
         values.learn(value, ValueFacts::sure(wanted));
-        program.outputs.push(place(value));
+        program.outputs.push(joined_operand(value));
         guards.push((formula, wanted));
     };
     let revealed = setup.revealed();

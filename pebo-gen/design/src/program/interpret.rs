@@ -39,7 +39,7 @@ impl Interpreter {
     pub fn new(program: &Program) -> Self {
         let read: Vec<usize> = (0..program.inputs.len()).filter(|input| program.reads(*input)).collect();
         let (constant, first) = (read.len(), read.len() + program.constants.len());
-        let place = |operand| match operand {
+        let slot = |operand| match operand {
             Operand::Input(index) => read.partition_point(|input| *input < index),
             Operand::Constant(index) => constant + index,
             Operand::Result(index) => first + index,
@@ -51,19 +51,19 @@ impl Interpreter {
             .operations
             .iter()
             .map(|&operation| match operation {
-                Operation::Neg(a) => Instruction::Neg(place(a)),
-                Operation::Add(a, b) => Instruction::Add(place(a), place(b)),
-                Operation::Sub(a, b) => Instruction::Sub(place(a), place(b)),
-                Operation::Mul(a, b) => Instruction::Mul(place(a), place(b)),
-                Operation::Div(a, b) => Instruction::Div(place(a), place(b)),
-                Operation::Power(a, b) => Instruction::Power(place(a), place(b)),
-                Operation::ExpM1(a) => Instruction::Unary(f64::exp_m1, place(a)),
-                Operation::Ln1P(a) => Instruction::Unary(f64::ln_1p, place(a)),
-                Operation::Unary(function, a) => Instruction::Unary(unary(function), place(a)),
-                Operation::Binary(function, a, b) => Instruction::Binary(binary(function), place(a), place(b)),
+                Operation::Neg(a) => Instruction::Neg(slot(a)),
+                Operation::Add(a, b) => Instruction::Add(slot(a), slot(b)),
+                Operation::Sub(a, b) => Instruction::Sub(slot(a), slot(b)),
+                Operation::Mul(a, b) => Instruction::Mul(slot(a), slot(b)),
+                Operation::Div(a, b) => Instruction::Div(slot(a), slot(b)),
+                Operation::Power(a, b) => Instruction::Power(slot(a), slot(b)),
+                Operation::ExpM1(a) => Instruction::Unary(f64::exp_m1, slot(a)),
+                Operation::Ln1P(a) => Instruction::Unary(f64::ln_1p, slot(a)),
+                Operation::Unary(function, a) => Instruction::Unary(unary(function), slot(a)),
+                Operation::Binary(function, a, b) => Instruction::Binary(binary(function), slot(a), slot(b)),
             })
             .collect();
-        let outputs = program.outputs.iter().copied().map(place).collect();
+        let outputs = program.outputs.iter().copied().map(slot).collect();
         Self { values, inputs: program.inputs.len(), read, first, instructions, outputs }
     }
 
@@ -82,8 +82,8 @@ impl Interpreter {
     /// The outputs in their order, for inputs given by their positions where they are read.
     pub fn evaluate(&mut self, input: impl Fn(usize) -> f64) -> impl Iterator<Item = f64> {
         let values = self.values.as_mut_slice();
-        for (place, &read) in self.read.iter().enumerate() {
-            values[place] = input(read);
+        for (slot, &read) in self.read.iter().enumerate() {
+            values[slot] = input(read);
         }
         for (index, instruction) in self.instructions.iter().enumerate() {
             values[self.first + index] = match *instruction {
@@ -97,7 +97,7 @@ impl Interpreter {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        self.outputs.iter().map(|&place| values[place])
+        self.outputs.iter().map(|&slot| values[slot])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Straight-line code: the computation of the derived formulas.
 //!
 //! ```text
-//! Expr -> stage (what depends on parameters alone, apart) -> factor -> lower -> Program -> cost, interpret, emit
+//! Expr -> stage (separate constants) -> factor -> lower -> Program -> cost, interpret, emit
 //! ```
 //!
 //! In: expressions of the algebra. Out: a [`Program`], whose value is that of the expressions up to

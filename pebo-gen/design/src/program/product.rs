@@ -94,9 +94,9 @@ impl Lowering<'_> {
 
     /// A power with the given base.
     fn power(&mut self, base: Operand, exponent: &Rational) -> Power {
-        let magnitude = exponent.abs();
-        let whole = u32::try_from(magnitude.floor().to_i64().unwrap_or(i64::MAX)).ok();
-        let fraction = &magnitude - &Rational::from(magnitude.floor());
+        let size = exponent.abs();
+        let whole = u32::try_from(size.floor().to_i64().unwrap_or(i64::MAX)).ok();
+        let fraction = &size - &Rational::from(size.floor());
         let factors = match whole {
             Some(whole) if whole <= LONGEST_CHAIN && fraction.is_zero() => {
                 vec![self.chain(base, whole)]
@@ -107,8 +107,8 @@ impl Lowering<'_> {
             }
             _ => {
                 let negative = exponent.is_negative();
-                let magnitude = self.number(&magnitude);
-                let exponent = self.plain(Signed { negative, operand: magnitude });
+                let size = self.number(&size);
+                let exponent = self.plain(Signed { negative, operand: size });
                 return Power::Above(vec![self.operation(Operation::Power(base, exponent))]);
             }
         };
@@ -158,16 +158,16 @@ struct CombinedPower {
 
 /// The exponent's absolute value, if factors with the same may be combined.
 pub(super) fn combined_exponent(exponent: &Rational) -> Option<u32> {
-    let magnitude = exponent.is_integer().then(|| u32::try_from(exponent.abs().to_i64()?).ok())??;
-    (SMALLEST_COMBINED..=LONGEST_CHAIN).contains(&magnitude).then_some(magnitude)
+    let size = exponent.is_integer().then(|| u32::try_from(exponent.abs().to_i64()?).ok())??;
+    (SMALLEST_COMBINED..=LONGEST_CHAIN).contains(&size).then_some(size)
 }
 
 /// The powers of products, and the product of the other factors.
 fn combined_powers(product: &Product) -> (Vec<CombinedPower>, Product) {
     let mut groups: BTreeMap<u32, Vec<(Expr, bool)>> = BTreeMap::new();
     for (base, exponent) in &product.factors {
-        if let Some(magnitude) = combined_exponent(exponent) {
-            groups.entry(magnitude).or_default().push((*base, exponent.is_negative()));
+        if let Some(size) = combined_exponent(exponent) {
+            groups.entry(size).or_default().push((*base, exponent.is_negative()));
         }
     }
     let mut coefficient = product.coefficient.clone();
@@ -185,7 +185,7 @@ fn combined_powers(product: &Product) -> (Vec<CombinedPower>, Product) {
         combined.push(CombinedPower { coefficient: root.unwrap_or(Rational::ONE), bases, exponent });
     }
     let raised = |exponent: &Rational| {
-        combined_exponent(exponent).is_some_and(|magnitude| combined.iter().any(|power| power.exponent == magnitude))
+        combined_exponent(exponent).is_some_and(|size| combined.iter().any(|power| power.exponent == size))
     };
     let factors = product.factors.iter().filter(|(_, exponent)| !raised(exponent)).cloned().collect();
     (combined, Product { coefficient, factors })

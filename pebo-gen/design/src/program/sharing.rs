@@ -75,8 +75,8 @@ impl Sharing {
 /// The powers that a product divides by; a general power takes its sign along instead.
 pub(super) fn denominators(product: &Product) -> Vec<Factor> {
     let divides = |factor: &&Factor| {
-        let magnitude = factor.1.abs();
-        let fraction = &magnitude - &Rational::from(magnitude.floor());
+        let size = factor.1.abs();
+        let fraction = &size - &Rational::from(size.floor());
         factor.1.is_negative() && (fraction.is_zero() || is_half(&fraction))
     };
     product.factors.iter().filter(divides).cloned().collect()

@@ -23,8 +23,8 @@ impl Program {
                 && self.flip(inner, &uses, DEEPEST)
             {
                 replaced[index] = inner;
-                if let Operand::Result(taken) = inner {
-                    uses[taken] = uses[index];
+                if let Operand::Result(inner_result) = inner {
+                    uses[inner_result] = uses[index];
                 }
             }
         }

@@ -70,9 +70,9 @@ mod tests {
         assert_eq!(spread(arena.mul(k, arena.add(arena.mul(a, x), b))), with_number);
         // `y` alone would have to be multiplied; a value with two uses would be computed twice.
         let plain = arena.mul(k, arena.add(arena.mul(a, x), y));
-        let twice = arena.add(arena.mul(k, sum), arena.power(sum, &Rational::from(2)));
-        for stays in [plain, twice] {
-            assert_eq!(spread(stays), stays);
+        let repeated = arena.add(arena.mul(k, sum), arena.power(sum, &Rational::from(2)));
+        for unchanged in [plain, repeated] {
+            assert_eq!(spread(unchanged), unchanged);
         }
     }
 }

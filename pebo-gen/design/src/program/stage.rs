@@ -175,7 +175,7 @@ impl Stages {
         Ok(best)
     }
 
-    /// The same with the opposites of these kept in their place.
+    /// The same, with the opposites of these kept.
     fn with_opposites(mut self, arena: &Arena, negated: &BTreeSet<Symbol>) -> Self {
         let opposites = negated.iter().map(|&symbol| (symbol, arena.neg(arena.of_symbol(symbol)))).collect();
         for term in &mut self.terms {
@@ -206,10 +206,10 @@ impl StagedPrograms {
             let mut open: Vec<Operand> = Vec::new();
             let opposites = program.operations.iter().filter(|operation| matches!(operation, Operation::Neg(_)));
             open.extend(opposites.flat_map(|operation| operation.operands()));
-            let mut seen: FxHashSet<Operand> = FxHashSet::default();
+            let mut guarded_values: FxHashSet<Operand> = FxHashSet::default();
             while let Some(operand) = open.pop() {
                 match operand {
-                    _ if !seen.insert(operand) => {}
+                    _ if !guarded_values.insert(operand) => {}
                     Operand::Input(input) => negated.extend(program.inputs.get(input)),
                     Operand::Result(result) => {
                         let operation = program.operations[result];
@@ -402,8 +402,8 @@ impl<W: Fn(Expr) -> bool> Split<'_, W> {
             factors.iter().cloned().partition(|factor| self.fixed.contains(&factor.0));
         // In a power of a quotient the parameters are a power of one constant: `K^10` alone may overflow.
         let is_raised = |(_, exponent): &(Expr, Rational)| {
-            let magnitude = combined_exponent(exponent);
-            magnitude.is_some() && rest.iter().any(|(_, moving)| combined_exponent(moving) == magnitude)
+            let combined = combined_exponent(exponent);
+            combined.is_some() && rest.iter().any(|(_, moving)| combined_exponent(moving) == combined)
         };
         let (raised, fixed): (Vec<_>, Vec<_>) = fixed.into_iter().partition(is_raised);
         let mut factors: Vec<_> = rest.into_iter().map(|(base, e)| (known[&base], e)).collect();

@@ -166,16 +166,16 @@ impl Program {
             .iter()
             .map(|constant| Operand::Constant(position(&mut joined.constants, constant.clone())))
             .collect();
-        let mut places: Vec<Operand> = Vec::with_capacity(other.operations.len());
+        let mut operands: Vec<Operand> = Vec::with_capacity(other.operations.len());
         for operation in &other.operations {
             let moved = operation.map(|operand| match operand {
                 Operand::Input(_) => operand,
                 Operand::Constant(index) => constants[index],
-                Operand::Result(index) => places[index],
+                Operand::Result(index) => operands[index],
             });
-            places.push(Operand::Result(position(&mut joined.operations, moved)));
+            operands.push(Operand::Result(position(&mut joined.operations, moved)));
         }
-        (joined, places)
+        (joined, operands)
     }
 
     /// Tests whether the value of the input matters.

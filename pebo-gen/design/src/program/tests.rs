@@ -409,7 +409,7 @@ fn sampled(regular: &[&str], seldom: &str, name: impl Fn(&Arena, &str) -> Expr) 
 }
 
 #[test]
-fn what_is_kept_is_not_kept_a_second_time_with_a_number() {
+fn a_kept_value_is_not_kept_again_with_a_number() {
     let formula = |a: &Arena, text: &str| {
         let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
         let both = a.sum([a.mul(q, r), a.power(q, &Rational::from(2)), r]);
@@ -430,7 +430,7 @@ fn what_is_kept_is_not_kept_a_second_time_with_a_number() {
 }
 
 #[test]
-fn what_a_sample_decides_is_kept_if_it_takes_more_than_a_few_operations() {
+fn terms_of_a_sample_are_kept_if_they_take_more_than_a_few_operations() {
     let formula = |a: &Arena, text: &str| {
         let [q, r, u] = ["q", "r", "u"].map(|name| a.variable(name));
         match text {
@@ -487,7 +487,7 @@ fn an_angle_that_others_make_up_is_not_called_for() {
 }
 
 #[test]
-fn a_part_is_computed_once_as_it_is_written() {
+fn a_subexpression_is_computed_once_as_written() {
     let arena = Arena::new();
     let [x, y, d] = ["x", "y", "d"].map(|name| arena.symbol(name));
     let (part, difference) = (arena.generated("B"), arena.sub(arena.one(), arena.of_symbol(d)));

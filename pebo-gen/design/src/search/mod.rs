@@ -182,7 +182,7 @@ struct Attempts<'a> {
     /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
     later: Vec<Vec<Expr>>,
     /// The transforms that were met.
-    seen: BTreeSet<Vec<Expr>>,
+    known: BTreeSet<Vec<Expr>>,
     /// The polynomials in the states that divide their own rates, once they were looked for.
     invariant: Option<Vec<Expr>>,
 }
@@ -197,7 +197,7 @@ impl<'a> Attempts<'a> {
             bound: None,
             generalised: None,
             later: Vec::new(),
-            seen: BTreeSet::new(),
+            known: BTreeSet::new(),
             invariant: None,
         }
     }
@@ -475,7 +475,7 @@ impl Attempts<'_> {
             return;
         }
         for (index, phi) in choice.transforms.into_iter().enumerate() {
-            if self.is_over() || !self.seen.insert(phi.clone()) {
+            if self.is_over() || !self.known.insert(phi.clone()) {
                 continue;
             }
             if index == 0 && choice.affine {
@@ -499,8 +499,8 @@ impl Attempts<'_> {
     /// Derives the claims with a third of the remaining budget: an undecided one then does not end the search.
     fn prove(&mut self, phi: &[Expr]) {
         let problem = self.problem;
-        let may_stand = |component: &Expr| problem.exists(*component) && is_of_states_and_outputs(problem, *component);
-        if !phi.iter().all(may_stand) {
+        let is_usable = |component: &Expr| problem.exists(*component) && is_of_states_and_outputs(problem, *component);
+        if !phi.iter().all(is_usable) {
             return;
         }
         let Some(phi) = phi.iter().map(|component| continuous(problem, *component)).collect::<Option<Vec<_>>>() else {

@@ -170,7 +170,7 @@ fn polynomials_that_divide_their_own_rates_are_found() {
 }
 
 #[test]
-fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
+fn closures_take_the_functions_of_formulas_as_written() {
     for (lines, expected) in [
         ("f_x: {p: v - q*p, s: v*p - 2*q*s}\nf_y: {q: 2*v*p + 2*s - p^2}", Some(&["p", "s - p^2/2"][..])),
         ("f_x: {p: v - q*p, s: v}\nf_y: {q: p + v*s}", Some(&["p", "s"])),
@@ -192,14 +192,14 @@ fn closures_take_what_formulas_show_and_leave_it_as_it_is() {
 }
 
 #[test]
-fn what_no_output_sees_is_left_out() {
+fn unobservable_functions_are_left_out() {
     let plant = plant(
         "x: [S, b, g]\ny: [I]\nf_x: {S: -b*S*I, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}\nphi: [b*S + b*I, b, g, b*g, S]",
     );
     let problem = Problem::of(&plant);
     let all = plant.transform();
-    let seen = observable(&problem, &all[..4]).expect("no obstacle");
-    assert_eq!(printed(&plant, &seen), ["S*b - g + I*b", "b", "b*g"]);
+    let kept = observable(&problem, &all[..4]).expect("no obstacle");
+    assert_eq!(printed(&plant, &kept), ["S*b - g + I*b", "b", "b*g"]);
     // The rate of S is not affine in these.
     assert_eq!(observable(&problem, &all[1..]).expect("no obstacle"), all[1..]);
 }

@@ -85,21 +85,21 @@ impl Bound {
     pub fn sentence(&self, arena: &Arena) -> String {
         let values: Vec<String> =
             self.point.iter().map(|(s, e)| format!("{} = {}", arena.name(*s), arena.print(*e))).collect();
-        let place = if values.is_empty() { String::new() } else { format!(" around {}", values.join(", ")) };
+        let location = if values.is_empty() { String::new() } else { format!(" around {}", values.join(", ")) };
         let (rank, states, class) = (self.rank, self.states, self.class.words());
         if rank == states {
-            return format!("of a {class} the rank of dphi/dx may be {rank} of {states}{place}");
+            return format!("of a {class} the rank of dphi/dx may be {rank} of {states}{location}");
         }
-        let shown = if self.proved { "proved" } else { "likely, by arithmetic modulo a prime" };
+        let status = if self.proved { "proved" } else { "likely, by arithmetic modulo a prime" };
         let number = match self.transforms() {
             Some(1) => ", and but for functions of y there is just one".to_owned(),
             Some(count) if count > 1 => format!(", and but for functions of y there are just {count}"),
             _ => String::new(),
         };
-        format!("no {class} has a rank of dphi/dx above {rank} of {states}{place}{number}: {shown}")
+        format!("no {class} has a rank of dphi/dx above {rank} of {states}{location}{number}: {status}")
     }
 
-    /// The relations that every gradient satisfies at the point, with the equations that show each.
+    /// The relations that every gradient satisfies at the point, with the equations that prove each.
     pub fn certificate(&self, arena: &Arena) -> Vec<String> {
         let term = |(index, c): (usize, &Expr)| {
             let slope = format!("dphi/d{}", arena.name(self.x[index]));
@@ -196,11 +196,11 @@ impl Search {
 
     /// The candidates in order of merit; of those with the same components in another order, the first.
     fn nearest(&self) -> impl Iterator<Item = &Candidate> {
-        let mut told = BTreeSet::new();
+        let mut reported = BTreeSet::new();
         self.candidates.iter().filter(move |candidate| {
             let mut components = candidate.formulas();
             components.sort_unstable();
-            told.insert((candidate.derivation.class.name(), components))
+            reported.insert((candidate.derivation.class.name(), components))
         })
     }
 

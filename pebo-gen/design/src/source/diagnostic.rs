@@ -19,14 +19,14 @@ pub enum Severity {
 #[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 pub struct Label {
     /// The span; serialises to the range of bytes, or null where there is none.
-    #[cfg_attr(feature = "yaml", serde(serialize_with = "place"))]
+    #[cfg_attr(feature = "yaml", serde(serialize_with = "byte_range"))]
     pub span: Span,
     /// The text beside it; may be empty.
     pub text: Box<str>,
 }
 
 #[cfg(feature = "yaml")]
-fn place<S: serde::Serializer>(span: &Span, serializer: S) -> Result<S::Ok, S::Error> {
+fn byte_range<S: serde::Serializer>(span: &Span, serializer: S) -> Result<S::Ok, S::Error> {
     serde::Serialize::serialize(&Some(*span).filter(|span| *span != Span::NOWHERE), serializer)
 }
 

@@ -85,7 +85,7 @@ fn first_line(span: Span, source: &Source) -> Span {
 
 /// A diagnostic as a program reads it: serialises to the object of the JSON report.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Located {
+pub struct LocatedDiagnostic {
     /// The code's name.
     pub code: &'static str,
     /// `error`, `warning` or `note`.
@@ -110,7 +110,7 @@ pub struct Located {
     pub replacement: Option<String>,
 }
 
-impl Located {
+impl LocatedDiagnostic {
     /// The diagnostic with its spans counted in `source`.
     pub fn new(diagnostic: &Diagnostic, source: &Source) -> Self {
         let start = if diagnostic.primary.span == Span::NOWHERE { 0 } else { diagnostic.primary.span.start };

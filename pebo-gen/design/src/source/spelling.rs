@@ -52,20 +52,20 @@ fn distance(left: &str, right: &str) -> usize {
 
 /// A text of the author's for use inside a message: in backticks, on one line, cut when long.
 pub fn quoted(text: &str) -> String {
-    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
-    shown = shown.replace("\\'", "'").replace("\\\"", "\"");
+    let mut printed: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    printed = printed.replace("\\'", "'").replace("\\\"", "\"");
     if text.chars().nth(LONGEST).is_some() {
-        shown.push('…');
+        printed.push('…');
     }
-    format!("`{shown}`")
+    format!("`{printed}`")
 }
 
 /// Names in a row for use inside a message: quoted, with commas, the first three dozen of them.
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
-    let mut shown: Vec<String> = names.by_ref().take(36).map(quoted).collect();
+    let mut printed: Vec<String> = names.by_ref().take(36).map(quoted).collect();
     if names.next().is_some() {
-        shown.push("…".to_owned());
+        printed.push("…".to_owned());
     }
-    shown.join(", ")
+    printed.join(", ")
 }

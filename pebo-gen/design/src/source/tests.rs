@@ -1,5 +1,5 @@
 use super::{
-    Code, Colour, Diagnostic, Diagnostics, Located, SIZE_LIMIT, Source, Span, listed, nearest, quoted, render,
+    Code, Colour, Diagnostic, Diagnostics, LocatedDiagnostic, SIZE_LIMIT, Source, Span, listed, nearest, quoted, render,
 };
 
 fn source(text: &str) -> Source {
@@ -9,8 +9,8 @@ fn source(text: &str) -> Source {
 #[test]
 fn positions_count_lines_and_characters_from_one() {
     let source = source("a: é+x\r\nb: 2\n");
-    let places = [(0, (1, 1)), (3, (1, 4)), (5, (1, 5)), (4, (1, 4)), (9, (2, 1)), (99, (3, 1))];
-    for (offset, (line, column)) in places {
+    let positions = [(0, (1, 1)), (3, (1, 4)), (5, (1, 5)), (4, (1, 4)), (9, (2, 1)), (99, (3, 1))];
+    for (offset, (line, column)) in positions {
         let position = source.position(offset);
         assert_eq!((position.line, position.column), (line, column), "offset {offset}");
     }
@@ -31,7 +31,7 @@ fn slices_end_on_whole_characters() {
 }
 
 #[test]
-fn what_is_not_a_small_text_is_refused() {
+fn only_small_texts_are_accepted() {
     let code = |bytes: Vec<u8>| Source::from_bytes("m", bytes).map_err(|d| d.code);
     assert_eq!(code(vec![b'a', 0xff]), Err(Code::NotText));
     assert_eq!(code(vec![b'a'; SIZE_LIMIT + 1]), Err(Code::FileTooLarge));
@@ -50,7 +50,7 @@ fn codes_are_unique_and_found_by_name() {
 }
 
 #[test]
-fn a_picture_shows_places_notes_and_help() {
+fn a_picture_has_spans_notes_and_help() {
     let source = source("parameters: {R: 1}\nx: [φ, R]\n");
     let diagnostic = Diagnostic::error(Code::DuplicateName, Span::new(27, 28), "`R` again")
         .label("here")
@@ -74,7 +74,7 @@ error[duplicate-name]: `R` again
 }
 
 #[test]
-fn every_place_can_be_pictured() {
+fn every_span_can_be_pictured() {
     let long = "x".repeat(200_000);
     for text in ["", "\n", "é", "a\r\nb", "\t\u{1b}[31m", &long] {
         let source = source(text);
@@ -89,8 +89,9 @@ fn every_place_can_be_pictured() {
 #[test]
 fn json_has_the_documented_fields() {
     let source = source("a\nbé: c\n");
-    let json =
-        |diagnostic: Diagnostic| serde_json::to_string(&Located::new(&diagnostic, &source)).expect("it serialises");
+    let json = |diagnostic: Diagnostic| {
+        serde_json::to_string(&LocatedDiagnostic::new(&diagnostic, &source)).expect("it serialises")
+    };
     assert_eq!(
         json(Diagnostic::error(Code::UnknownKey, Span::new(7, 8), "unknown key").suggest(Some("d"))),
         r#"{"code":"unknown-key","severity":"error","message":"unknown key","line":2,"column":5,"help":"did you mean `d`?","span":{"start":7,"end":8},"label":"","labels":[],"notes":[],"replacement":"d"}"#
@@ -145,7 +146,7 @@ fn quoted_texts_are_short_and_harmless() {
 }
 
 #[test]
-fn a_nearest_name_is_what_to_write_instead() {
+fn a_nearest_name_is_the_replacement() {
     let diagnostic = Diagnostic::error(Code::UnknownKey, Span::new(0, 2), "unknown key");
     assert_eq!(diagnostic.clone().suggest(Some("phi")).replacement(), Some("phi"));
     assert_eq!(diagnostic.help("did you mean `phi`?").replacement(), None);

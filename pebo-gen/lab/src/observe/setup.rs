@@ -245,7 +245,8 @@ impl Section<'_> {
     fn estimator(&mut self, unknowns: usize) {
         use model::Estimator as Name;
         let name = self.written.estimator();
-        let missing: Vec<&str> = name.needs().iter().copied().filter(|key| self.written.place(key).is_none()).collect();
+        let missing: Vec<&str> =
+            name.needs().iter().copied().filter(|key| self.written.span_of(key).is_none()).collect();
         for key in &missing {
             self.lacks(
                 &format!("the `{key}` of the estimator `{}`", name.name()),

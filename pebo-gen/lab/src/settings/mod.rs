@@ -59,7 +59,7 @@ impl DerivedSettings {
     ) -> Option<Self> {
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        if let Some(rebase) = model.observer.rebase.place().filter(|_| !derivation.can_rebase(plant)) {
+        if let Some(rebase) = model.observer.rebase.span().filter(|_| !derivation.can_rebase(plant)) {
             problems.push(cannot_rebase(&plant.name, rebase));
             return None;
         }

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_integrates_a_signal_drifts_and_a_constant_does_not() {
+    fn an_integrator_of_a_signal_drifts_and_a_constant_does_not() {
         let pendulum = "x: [p]\ny: [q]\nu: [tau]\nf_x: {p: tau - sin(q)}\nf_y: {q: p}\nphi: [p]";
         assert_eq!(of(pendulum).unwrap(), "chi1 of q tau");
         // h1 is zero, also where it is not written so; h2 reads the input alone.

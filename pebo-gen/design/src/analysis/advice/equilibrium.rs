@@ -69,7 +69,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     if let Some(output) = plant.y.iter().find(|output| output.rate.is_none() && output.value.is_none()) {
         return Ok(Equilibrium::Undecided(format!("give the rate of `{}`", arena.name(output.symbol))));
     }
-    let rates = resting(plant);
+    let rates = rates_of_signals(plant);
     if let Some(time) = plant.time
         && rates.values().any(|rate| arena.depends_on(*rate, &BTreeSet::from([time])))
     {
@@ -78,7 +78,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
     let inputs = plant.commanded().chain(plant.w.iter().copied()).collect();
     let mut doubtful = None;
-    let mut rests = |values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
+    let mut equilibrium = |values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
         Ok(there) => Some((values.clone(), there)),
         Err(reason) => {
             doubtful.get_or_insert(reason);
@@ -90,7 +90,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
     // If an equilibrium of the unmeasured states is too hard to find, zero is tried, as for momenta.
     let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
-    let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut rests));
+    let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut equilibrium));
     // At an equilibrium nothing moves: a state that always moves is looked for only if no such point was found.
     if !matches!(searched, Ok(Ok(_)))
         && let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero))
@@ -114,33 +114,33 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let order = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol));
     let order = order.chain(plant.commanded()).chain(plant.w.iter().copied());
     let orientation = Orientation::new(arena, &there);
-    let shown = |value: Expr| match operations(arena, value) {
+    let printed = |value: Expr| match operations(arena, value) {
         // Its normal form would be longer than anybody reads, and take longer than all claims.
         MOST_TIDIED.. => value,
         _ => orientation.of(shortest_oriented(arena, &orientation, value)),
     };
-    let values = order.filter_map(|s| Some((s, shown(*values.get(&s)?)))).collect();
+    let values = order.filter_map(|s| Some((s, printed(*values.get(&s)?)))).collect();
     Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
 }
 
 /// The rates of all signals but time.
-fn resting(plant: &Plant) -> BTreeMap<Symbol, Expr> {
+fn rates_of_signals(plant: &Plant) -> BTreeMap<Symbol, Expr> {
     let mut rates = plant.rates();
     rates.retain(|symbol, _| plant.time != Some(*symbol));
     rates
 }
 
-/// The domain of the symbols that stay free, with the proof that every rate and identity vanishes there; else the
+/// The domain of the free symbols, with the proof that every rate and identity vanishes there; else the
 /// reason.
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
     let arena = &plant.arena;
     let there = domain
         .restricted(arena, values)
-        .ok_or_else(|| "no rest point that was looked at lies within the assumptions and conditions".to_owned())?;
-    match resting(plant).iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
+        .ok_or_else(|| "no equilibrium that was looked at lies within the assumptions and conditions".to_owned())?;
+    match rates_of_signals(plant).iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
-            Err("the identities were not shown to hold where the plant rests".to_owned())
+            Err("the identities were not shown to hold at the equilibrium".to_owned())
         }
         None => Ok(there),
     }
@@ -189,8 +189,8 @@ mod tests {
         assert!(point.still, "{lines}");
         assert_eq!(point.rank, Some(1), "{lines}");
         let arena = &plant.arena;
-        let shown = point.values.iter().map(|(s, value)| format!("{} = {}", arena.name(*s), arena.print(*value)));
-        shown.collect::<Vec<String>>().join(", ")
+        let printed = point.values.iter().map(|(s, value)| format!("{} = {}", arena.name(*s), arena.print(*value)));
+        printed.collect::<Vec<String>>().join(", ")
     }
 
     fn undecided(lines: &str) -> String {
@@ -203,7 +203,7 @@ mod tests {
                          f_x: {i: (E - (1 - d)*v)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}\nphi: [i]";
 
     #[test]
-    fn converters_rest_where_the_textbook_says() {
+    fn converters_have_the_equilibria_of_the_textbook() {
         assert_eq!(at(&format!("{BOOST}\nassume: [0 < d < 1]")), "i = E/(R*(1 - d)^2), v = E/(1 - d)");
         let cuk = "parameters: {L1: 1, C2: 1, L3: 1, C4: 1, G: 1, E: 12}\nx: [i1, i3]\ny: [v2, v4]\nu: [d]\n\
                    assume: [0 < d < 1]\nf_x: {i1: (E - (1 - d)*v2)/L1, i3: -(d*v2 + v4)/L3}\n\
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_in_many_ways_rests_without_turning() {
+    fn a_rotor_with_many_turns_has_an_equilibrium_without_turning() {
         let satellite = "x: [a, b, c]\ny: [q0, q1, q2, q3]\nu: [t1, t2, t3]\n\
                          f_x: {a: t1, b: t2, c: t3}\nidentities: [q0^2 + q1^2 + q2^2 + q3^2 - 1]\n\
                          f_y: {q0: -(q1*a + q2*b + q3*c)/2, q1: (q0*a - q3*b + q2*c)/2,\n\
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn identities_hold_where_the_plant_rests() {
+    fn identities_hold_at_the_equilibrium() {
         // A point on the unit circle has no equilibrium at the circle's centre.
         let circle = "x: [c, s]\ny: [q]\nu: [v, w]\nidentities: [c^2 + s^2 - 1]\n\
                       f_x: {c: -s*w, s: c*w}\nf_y: {q: v*c}\nphi: [c, s]";
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_generalised_cascade_z_rests() {
+    fn a_generalised_cascade_has_an_equilibrium_of_z() {
         let lines = "x: [a, b]\ny: [c]\nu: [u]\nf_x: {a: b, b: u - a}\nf_y: {c: a}\nphi: [a, b]";
         let (_, equilibrium) = of(lines);
         assert!(matches!(equilibrium, Some(Equilibrium::At(OperatingPoint { still: true, .. }))), "{equilibrium:?}");
@@ -309,13 +309,13 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_everywhere_has_rank_zero() {
+    fn a_cascade_at_equilibrium_everywhere_has_rank_zero() {
         let (_, equilibrium) = of("x: [x]\ny: [y]\nf_x: {x: 0}\nf_y: {y: 0}\nphi: [x]");
         assert!(matches!(equilibrium, Some(Equilibrium::At(OperatingPoint { rank: Some(0), .. }))), "{equilibrium:?}");
     }
 
     #[test]
-    fn what_is_not_solved_is_said() {
+    fn an_unsolved_equilibrium_is_reported() {
         let reason = undecided("x: [x]\ny: [y]\nf_x: {x: y + sin(y) - 1}\nf_y: {y: x}\nphi: [x]");
         assert!(reason.starts_with("no rule solves `") && reason.contains("sin(y)"), "{reason}");
         let reason = undecided("x: [x]\ny: [y, s]\nf_x: {x: s}\nf_y: {y: x}\nphi: [x]");
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn a_state_that_never_rests_is_named() {
+    fn a_state_without_equilibrium_is_named() {
         let (plant, equilibrium) = of("x: [x]\ny: [y]\nu: [u]\nf_x: {x: 1 + u^2}\nf_y: {y: x}\nphi: [x]");
         let Some(Equilibrium::Nowhere(symbol)) = equilibrium else { panic!("{equilibrium:?}") };
         assert_eq!(plant.arena.name(symbol), "x");

@@ -19,7 +19,7 @@ pub(in crate::analysis) fn known(plant: &Plant, rate: Expr) -> Row {
     row
 }
 
-/// The row of a rate; none where points of the domain show that it is no affine function of the transform.
+/// The row of a rate; none where points of the domain refute that it is affine in the transform.
 pub(in crate::analysis) fn row(plant: &Plant, domain: &Domain, rate: Expr) -> Result<Option<Row>, Obstacle> {
     let open = match affine::of(plant, domain, rate) {
         Ok(Some(row)) => return Ok(Some(row)),

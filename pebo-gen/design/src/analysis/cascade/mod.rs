@@ -48,7 +48,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let row = |(rate, component): (&Expr, &Component)| match component {
         Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
-        // Quadratic in momenta: points show that it is not affine.
+        // Quadratic in momenta: not affine, by points.
         Component::Bound { .. } if is_implicit(plant) => {
             affine::refuted(plant, domain, *rate).map_or(Err(Obstacle::NoWitness), |_| Ok(None))
         }
@@ -132,7 +132,7 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
     match killing::is_killing(&plant.arena, domain, mechanical, &mechanical.frame.column(index)) {
         Ok(true) => Component::Free(momentum::rate(plant, domain, mechanical, index)),
         Ok(false) => match &mechanical.in_velocities {
-            // The rate has no normal form that could be looked at; that it varies, points show.
+            // The rate has no normal form; points prove that it varies.
             Some(printed) => {
                 let varying = killing::quadratic(&plant.arena, mechanical, index, &printed.velocities);
                 let rate =

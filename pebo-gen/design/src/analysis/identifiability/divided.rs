@@ -117,14 +117,18 @@ fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
 fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
     let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
     let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
-    Diagnostic::error(Code::IdentifiabilityUndecided, at_phi(plant), "no motion was found that identifies the unknowns")
-        .label(format!(
-            "while {} {} one sign, not all of them are seen",
-            dividers.join(", "),
-            if dividers.len() == 1 { "keeps" } else { "keep" }
-        ))
-        .note("and no motion was found that passes to another sign and shows them all")
-        .help("choose a phi of what is seen on one side alone, and state that side under `assume`")
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "no trajectory was found that identifies the unknowns",
+    )
+    .label(format!(
+        "while {} {} one sign, not all of them are identifiable",
+        dividers.join(", "),
+        if dividers.len() == 1 { "keeps" } else { "keep" }
+    ))
+    .note("and no trajectory was found that passes to another sign and identifies them all")
+    .help("choose a phi of what is identifiable on one side alone, and state that side under `assume`")
 }
 
 /// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
@@ -228,7 +232,7 @@ fn on_parts(
             found.extend(reported);
             return Ok(whole.claim);
         }
-        // A fundamental matrix is another at every moment, so that rows of two moments do not compare.
+        // A fundamental matrix varies with time: rows of two instants do not compare.
         let entries: Vec<Expr> = cells.iter().flat_map(|cell| cell.rows.concat()).collect();
         let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
         if by_psi {

@@ -145,7 +145,7 @@ mod tests {
 
     /// With another value of k the determinant may vanish, and values may be set at run time.
     #[test]
-    fn what_dividing_the_box_shows_holds_for_the_values_of_parameters_alone() {
+    fn a_proof_by_dividing_the_box_holds_for_the_values_of_parameters_alone() {
         let general = identified("0 < d < 0.9", "p: (1 + d*sin(e))*a + d*b, q: b");
         assert!(general.singular_where.is_empty() && general.everywhere_else);
         let special = identified("0 < d < 1", "p: (1 + k*d*sin(e))*a + d*b, q: b");
@@ -154,11 +154,11 @@ mod tests {
     }
 
     #[test]
-    fn a_determinant_is_positive_where_it_is_shown_to_be() {
+    fn a_determinant_is_positive_where_it_is_proved() {
         // By the assumptions: (1 - d)^2 on the open interval.
         let facts = gram_of("0 < d < 1", "p: (1 - d)*a + d*b, q: b");
         assert_eq!(facts.positive, Some(Positive::Assumed));
-        // By division: 1 + d sin(e), whose sign no rule sees, on the box that the assumptions state, and
+        // By division: 1 + d sin(e), whose sign no rule finds, on the box that the assumptions state, and
         // on a turn of e.
         let rates = "p: (1 + d*sin(e))*a + d*b, q: b";
         assert_eq!(gram_of("0 < d < 0.9, -3 < e < 3", rates).positive, Some(Positive::Assumed));

@@ -160,7 +160,7 @@ fn where_analytic(
         }
         claim
     };
-    if excited_in_motion(plant, domain, cascade, &stack, unknowns) {
+    if excited_over_time(plant, domain, cascade, &stack, unknowns) {
         return excited().into();
     }
     let mut latest = stack.clone();
@@ -273,7 +273,7 @@ fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
 }
 
 /// Tests whether rows and their derivatives have full rank at points: exact algebra is for deficient ones.
-fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
+fn excited_over_time(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[Vec<Expr>], unknowns: usize) -> bool {
     let arena = &plant.arena;
     let Ok(mut flow) = Flow::new(plant, domain, cascade) else { return false };
     let (mut stack, mut latest) = (rows.to_vec(), rows.to_vec());
@@ -297,8 +297,8 @@ fn excited_in_motion(plant: &Plant, domain: &Domain, cascade: &Cascade, rows: &[
 fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
     let arena = &plant.arena;
     let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
-    let rests = |symbol: Symbol| decide(arena, flow.rate(arena, arena.of_symbol(symbol)), domain).is_zero();
-    arena.symbols_of(formulas).into_iter().any(|symbol| !rests(symbol))
+    let is_constant = |symbol: Symbol| decide(arena, flow.rate(arena, arena.of_symbol(symbol)), domain).is_zero();
+    arena.symbols_of(formulas).into_iter().any(|symbol| !is_constant(symbol))
 }
 
 /// Vectors that every row provably annihilates at the given values of the parameters; as formulas in the
@@ -316,7 +316,7 @@ fn hidden_from(
     Ok(HiddenDirections { directions: if special_values { special } else { general }, special_values })
 }
 
-/// Directions of the unknowns that no row sees.
+/// Directions of the unknowns that are unobservable in every row.
 struct HiddenDirections {
     directions: Vec<Vec<Expr>>,
     /// True if other values of the parameters leave fewer.
@@ -383,7 +383,7 @@ fn never(
         }
     }
     let blind = match &plant.class {
-        Some(Class::Linear(linear)) => pencil::blindness(plant, domain, linear).ok().flatten(),
+        Some(Class::Linear(linear)) => pencil::unobservable_states(plant, domain, linear).ok().flatten(),
         _ => None,
     };
     match blind {

@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn factors_are_told_apart_and_those_that_do_not_vanish_are_dropped() {
+    fn factors_are_separated_and_nonzero_ones_dropped() {
         let phases = "(1 - d)*(1 - e)*a";
         assert_eq!(of("k > 0", phases), "d = 1, e = 1 | (1 - d)^2*(1 - e)^2");
         assert_eq!(of("0 < d < 1", phases), "e = 1 | (1 - d)^2*(1 - e)^2");
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_denominator_takes_away_is_no_place() {
+    fn a_zero_that_a_denominator_cancels_is_not_listed() {
         for (rate, determinant) in
             [("a/(1 + abs(w))", "1/(abs(w) + 1)^2"), ("a/(1 + sqrt(1 + w^2))", "1/(sqrt(w^2 + 1) + 1)^2")]
         {

@@ -25,7 +25,7 @@ pub(super) fn open_conditions(
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let conditions = arena.domain_conditions(&[formula], Regularity::Defined).into_iter();
     let there = conditions.map(|(part, relation)| ((part, relation), (arena.substitute(part, &transform), relation)));
-    there.filter(|(_, ask)| !domain.grants(arena, *ask)).collect()
+    there.filter(|(_, condition)| !domain.grants(arena, *condition)).collect()
 }
 
 /// The expression that vanishes if the formula is right, for an angle up to periods: `phi_left(phi(x, y), y) - x`.

@@ -21,7 +21,7 @@ use pebo_cas::{self, Domain, Expr, Rational, Relation, Symbol};
 use super::design::{Claim, Comparison, LeftInverse, Origin, Verdict, Witness};
 use checking::{check, open_conditions};
 use pebo_cas::linear::rank::null_vectors;
-use words::{degenerate, not_injective, refuted, takes_twice, undecided, underivable};
+use words::{degenerate, not_injective, not_one_to_one, refuted, undecided, underivable};
 
 /// Proves or refutes the left inverse.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> Claim<LeftInverse> {
@@ -81,12 +81,12 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let missing: Vec<Symbol> =
         plant.x.iter().map(|s| s.symbol).filter(|s| !recovered.contains(s) && !ambiguous.contains(s)).collect();
     if origin == Origin::Derived && !missing.is_empty() {
-        if let Some(direction) = unseen_direction(plant, domain) {
+        if let Some(direction) = unobservable_direction(plant, domain) {
             found.push(degenerate(plant, &direction));
             verdict = Verdict::Refuted;
         } else if let Some((state, witness)) = missing.iter().find_map(|s| Some((*s, taken_twice(plant, domain, *s)?)))
         {
-            found.push(takes_twice(plant, state, &witness));
+            found.push(not_one_to_one(plant, state, &witness));
             result.witness.get_or_insert(witness);
             verdict = Verdict::Refuted;
         } else {
@@ -115,7 +115,8 @@ fn defined(
     found: &mut Vec<Diagnostic>,
 ) -> bool {
     let arena = &plant.arena;
-    let unproved = open_conditions(plant, domain, formula).into_iter().find(|(_, ask)| ask.1 != Relation::NonZero);
+    let unproved =
+        open_conditions(plant, domain, formula).into_iter().find(|(_, condition)| condition.1 != Relation::NonZero);
     let Some(((part, relation), (at_phi, _))) = unproved else { return true };
     let (sign, at_phi) = (relation.sign(), arena.print(at_phi));
     found.push(
@@ -148,8 +149,8 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
         both.facts.assume(arena.substitute(fact, &other), relation);
     }
     let same = |phi: &Expr| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), &both).is_zero();
-    let stands = |identity: &Formula| decide(arena, arena.substitute(identity.expr, &other), &both).is_zero();
-    if !plant.transform().iter().all(same) || !plant.identities.iter().all(stands) {
+    let holds = |identity: &Formula| decide(arena, arena.substitute(identity.expr, &other), &both).is_zero();
+    if !plant.transform().iter().all(same) || !plant.identities.iter().all(holds) {
         return None;
     }
     refute(arena, tested, &both)
@@ -170,11 +171,11 @@ fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness>
     }
     // The domain is where the plant and the transform have values and derivatives.
     let formulas: Vec<Expr> = transform.iter().copied().chain(plant.rates().into_values()).collect();
-    let asks = arena.domain_conditions(&formulas, Regularity::Differentiable);
+    let conditions = arena.domain_conditions(&formulas, Regularity::Differentiable);
     let points = domain.points(arena, &formulas).take(POINTS);
     points.into_iter().find_map(|point| {
         let Collision { at, between, values } =
-            pebo_cas::domain::injectivity::collision(arena, domain, &asks, component, state, &point)?;
+            pebo_cas::domain::injectivity::collision(arena, domain, &conditions, component, state, &point)?;
         let difference = arena.sub(arena.of_symbol(state), arena.number(at.clone()));
         let ends = [&between[0] - &at, &between[1] - &at].map(|end| end.to_f64());
         let place = |value: &Rational| vec![(state, arena.number(value.clone()))];
@@ -195,11 +196,11 @@ fn taken_twice(plant: &Plant, domain: &Domain, state: Symbol) -> Option<Witness>
 }
 
 /// A direction of x that the transform does not see anywhere, if there is one.
-fn unseen_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
+fn unobservable_direction(plant: &Plant, domain: &Domain) -> Option<Vec<Expr>> {
     let arena = &plant.arena;
     // A symbol fixed by an identity is no direction of the domain.
-    let seen = plant.phi.iter().chain(&plant.identities);
+    let functions = plant.phi.iter().chain(&plant.identities);
     let slopes: Vec<Vec<Expr>> =
-        seen.map(|seen| plant.x.iter().map(|s| arena.derivative(seen.expr, s.symbol)).collect()).collect();
+        functions.map(|function| plant.x.iter().map(|s| arena.derivative(function.expr, s.symbol)).collect()).collect();
     null_vectors(arena, domain, &slopes, plant.x.len()).ok()?.into_iter().next()
 }

@@ -64,7 +64,7 @@ impl<'a> StateSolver<'a> {
         Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), with_outputs: OnceCell::new() })
     }
 
-    /// The best formula for a state that is right, and else the likeliest: one that is wrong may still show that the
+    /// The best formula for a state that is right, and else the likeliest: a wrong one may still prove that the
     /// transform is not one-to-one.
     fn formula(&self, state: Symbol) -> Result<Option<Expr>, Obstacle> {
         let arena = &self.plant.arena;

@@ -18,17 +18,17 @@ pub(super) fn refuted(plant: &Plant, domain: &Domain, state: Symbol, span: Span,
         .label(format!("at z = phi(x, y) this formula is not equal to {name}"))
         .note(witness.sentence(arena));
     if let Some(period) = plant.period(state) {
-        let shown = arena.print(period);
+        let printed = arena.print(period);
         if unlike_after(plant, domain, state, period).is_some() {
             return diagnostic
                 .note(format!(
-                    "this is how a rate of the plant differs between {name} + {shown} and {name}: {shown} is no period of \
+                    "this is how a rate of the plant differs between {name} + {printed} and {name}: {printed} is no period of \
                      {name}, and to know {name} up to multiples of it is not to know {name}"
                 ))
                 .help(format!("declare a period of {name} under `angles` with which all rates repeat"));
         }
         diagnostic =
-            diagnostic.note(format!("this is not zero, so the two differ by more than whole periods of {shown}"));
+            diagnostic.note(format!("this is not zero, so the two differ by more than whole periods of {printed}"));
     }
     let mend = solving::formulas(plant, domain).ok().and_then(|all| {
         let (_, formula) = all.into_iter().find(|(own, _)| own.symbol == state)?;
@@ -51,7 +51,7 @@ pub(super) fn not_injective(plant: &Plant, state: Symbol, formula: Expr, witness
         .help(format!("state the sign of {name} under `assume`, or choose a phi that is one-to-one in {name}"))
 }
 
-pub(super) fn takes_twice(plant: &Plant, state: Symbol, witness: &Witness) -> Diagnostic {
+pub(super) fn not_one_to_one(plant: &Plant, state: Symbol, witness: &Witness) -> Diagnostic {
     let arena = &plant.arena;
     let name = arena.name(state);
     let mut diagnostic =

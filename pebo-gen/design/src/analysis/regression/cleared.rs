@@ -88,9 +88,9 @@ fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
     };
     let Some(known) = known.into_iter().find(is_the_state) else { return Vec::new() };
     let at = BTreeMap::from([(*state, known)]);
-    let told = |phi: Expr| Some(arena.substitute(phi, &at)).filter(|value| !arena.depends_on(*value, &hidden));
+    let value = |phi: Expr| Some(arena.substitute(phi, &at)).filter(|value| !arena.depends_on(*value, &hidden));
     let of_state = |phi: &Expr| arena.depends_on(*phi, &hidden);
-    plant.transform().into_iter().filter(of_state).filter_map(|phi| Some(arena.sub(phi, told(phi)?))).collect()
+    plant.transform().into_iter().filter(of_state).filter_map(|phi| Some(arena.sub(phi, value(phi)?))).collect()
 }
 
 /// Other forms of an identity, each proved.

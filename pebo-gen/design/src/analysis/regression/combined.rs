@@ -130,7 +130,7 @@ fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftIn
     if relations::possible(plant, domain) {
         relations = relations::among(plant, domain).unwrap_or_default();
         complete &= relations::are_all(plant, domain, &relations);
-        relations.retain(|relation| tells(plant, domain, *relation));
+        relations.retain(|relation| is_informative(plant, domain, *relation));
     }
     let equations = relations.into_iter().chain(identities);
     (equations.map(|rate| Equation { primitive: arena.zero(), rate }).collect(), complete)
@@ -138,7 +138,7 @@ fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftIn
 
 /// Tests whether a relation restricts the unknowns for every choice of phi: one that is linear with constant
 /// coefficients and a constant right side only makes a component of phi redundant.
-fn tells(plant: &Plant, domain: &Domain, relation: Expr) -> bool {
+fn is_informative(plant: &Plant, domain: &Domain, relation: Expr) -> bool {
     let arena = &plant.arena;
     let signals: BTreeSet<Symbol> = plant.y.iter().map(|o| o.symbol).chain(plant.u.iter().copied()).collect();
     arena.depends_on(relation, &signals) || affine(plant, domain, relation).is_none()

@@ -93,8 +93,7 @@ pub(super) fn steps(
             let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
             let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
             if blind && !bounded && constant && plant.period(state).is_none() {
-                // The state may well be an angle: nothing that the outputs tell distinguishes it from one. A period is
-                // positive.
+                // The state may well be an angle: the outputs do not distinguish it from one. A period is positive.
                 let opposite = arena.neg(shift);
                 let shift = if domain.implies(arena, opposite, Relation::Positive) { opposite } else { shift };
                 found.push(up_to_steps(plant, index, (state, shift)));

@@ -13,7 +13,7 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 /// One output as an affine function of the transform.
-pub(super) struct Row {
+pub(super) struct OutputRate {
     /// The term free of x.
     pub(super) known: Expr,
     /// The coefficients of the components of the transform, free of x.
@@ -27,27 +27,27 @@ pub(super) fn decompose(
     domain: &Domain,
     left_inverse: Option<&LeftInverse>,
     (index, rate): (usize, Expr),
-) -> Result<Option<Row>, Obstacle> {
+) -> Result<Option<OutputRate>, Obstacle> {
     let others = || {
         let inverse = left_inverse.filter(|_| plant.phi.len() > plant.x.len())?;
         by_left_inverse(plant, domain, inverse, rate)
     };
     Ok(decomposed(plant, domain, index, rate)?.map(|row| match others() {
-        Some(other) if asks(plant, domain, &other) < asks(plant, domain, &row) => other,
+        Some(other) if open_conditions(plant, domain, &other) < open_conditions(plant, domain, &row) => other,
         _ => row,
     }))
 }
 
 /// The number of a row's domain conditions that the domain does not imply.
-fn asks(plant: &Plant, domain: &Domain, row: &Row) -> usize {
+fn open_conditions(plant: &Plant, domain: &Domain, row: &OutputRate) -> usize {
     let arena = &plant.arena;
     let formulas = [row.factors.as_slice(), &[row.known]].concat();
     let conditions = arena.domain_conditions(&formulas, Regularity::Defined).into_iter();
-    conditions.filter(|ask| !domain.grants(arena, *ask)).count()
+    conditions.filter(|condition| !domain.grants(arena, *condition)).count()
 }
 
 /// The rate at the left inverse, where that is affine in z; proved.
-fn by_left_inverse(plant: &Plant, domain: &Domain, inverse: &LeftInverse, rate: Expr) -> Option<Row> {
+fn by_left_inverse(plant: &Plant, domain: &Domain, inverse: &LeftInverse, rate: Expr) -> Option<OutputRate> {
     let arena = &plant.arena;
     let states: BTreeMap<Symbol, Expr> = inverse.x.iter().copied().collect();
     let z: BTreeSet<Symbol> = plant.z.iter().copied().collect();
@@ -61,16 +61,16 @@ fn by_left_inverse(plant: &Plant, domain: &Domain, inverse: &LeftInverse, rate: 
     let rebuilt = arena.add(known, dot(arena, &factors, &plant.transform()));
     let is_right =
         factors.iter().chain([&known]).all(is_free) && decide(arena, arena.sub(rate, rebuilt), domain).is_zero();
-    is_right.then_some(Row { known, factors })
+    is_right.then_some(OutputRate { known, factors })
 }
 
-fn decomposed(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<Row>, Obstacle> {
+fn decomposed(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Result<Option<OutputRate>, Obstacle> {
     let arena = &plant.arena;
     let phi = plant.transform();
     if let Some((known, factors)) = plant.proposal.rates.get(&plant.y[index].symbol) {
         let rebuilt = arena.add(*known, dot(arena, factors, &phi));
         if decide(arena, arena.sub(rate, rebuilt), domain).is_zero() {
-            return Ok(Some(Row { known: *known, factors: factors.clone() }));
+            return Ok(Some(OutputRate { known: *known, factors: factors.clone() }));
         }
     }
     let Some(row) = affine::of(plant, domain, rate)? else { return Ok(None) };
@@ -84,7 +84,7 @@ fn decomposed(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Resul
             None => *factor,
         })
         .collect();
-    Ok(Some(Row { known, factors }))
+    Ok(Some(OutputRate { known, factors }))
 }
 
 /// `Phi_0` and `Phi_1` of affine rows.
@@ -94,7 +94,7 @@ pub(super) fn linear(
     cascade: &Cascade,
     left_inverse: Option<&LeftInverse>,
     rows: Vec<usize>,
-    affine: &[Row],
+    affine: &[OutputRate],
 ) -> Regression {
     let arena = &plant.arena;
     let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };

@@ -68,13 +68,13 @@ fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> 
         }
     }
     // A component without a rate of its own is a constant, and so is each of its functions.
-    let rests = |index: usize| is_constant(plant, cascade, index);
+    let is_constant_component = |index: usize| is_constant(plant, cascade, index);
     let nonlinear = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
     plant
         .z
         .iter()
         .enumerate()
-        .find(|(index, z)| rests(*index) && nonlinear(**z))
+        .find(|(index, z)| is_constant_component(*index) && nonlinear(**z))
         .map(|(index, _)| OtherForm::Function(index))
 }
 
@@ -169,7 +169,7 @@ pub(super) fn prove(
             Err(obstacle) => obstacles.push((*index, *rate, *span, Some(obstacle))),
         }
     }
-    // A rate that an unmeasured signal moves tells nothing, unless combinations are free of it; the others have to do.
+    // A rate that an unmeasured signal moves is of no use, unless combinations are free of it; the others have to do.
     rows.retain(|row| !moved.contains(row));
     if rows.is_empty() {
         let outputs: Vec<usize> = moved.iter().map(|row| row.0).collect();
@@ -277,13 +277,13 @@ fn refuse(
             // constant.
             None => constant_component(plant, cascade).map(OtherForm::Function),
         };
-        if let (Some(shown), Some(form)) = (&curvature, form) {
+        if let (Some(point), Some(form)) = (&curvature, form) {
             verdict = Verdict::Undecided;
-            found.push(not_in_other_forms(plant, index, span, shown, form));
-        } else if let Some(shown) = curvature {
+            found.push(not_in_other_forms(plant, index, span, point, form));
+        } else if let Some(point) = curvature {
             let is_curved = |term| nonlinear(plant, domain, term, left_inverse).is_some();
-            let places = blame::summands(plant, index, is_curved);
-            found.push(refuted(plant, index, &places, &shown, NO_SEPARATION));
+            let summands = blame::summands(plant, index, is_curved);
+            found.push(refuted(plant, index, &summands, &point, NO_SEPARATION));
         } else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));

@@ -28,21 +28,21 @@ pub(super) fn hidden_by_signals(
     }
     let mut verdict = Verdict::Refuted;
     for (index, rate, span) in moved {
-        let seen = plant.w.iter().find_map(|w| {
+        let witness = plant.w.iter().find_map(|w| {
             let slope = arena.derivative(*rate, *w);
             refute(arena, slope, domain).map(|point| (*w, Witness::of(slope, &point)))
         });
-        let Some((signal, witness)) = seen else {
+        let Some((signal, witness)) = witness else {
             verdict = Verdict::Undecided;
             found.push(undecided(plant, *index, *span, &Obstacle::NoWitness));
             continue;
         };
-        let places = blame::summands(plant, *index, |term| arena.depends_on(term, &BTreeSet::from([signal])));
+        let summands = blame::summands(plant, *index, |term| arena.depends_on(term, &BTreeSet::from([signal])));
         let (output, signal) = (arena.name(plant.y[*index].symbol), arena.name(signal));
         found.push(
             Diagnostic::error(
                 Code::RegressionNonlinear,
-                places.first().map_or(*span, |place| place.span),
+                summands.first().map_or(*span, |summand| summand.span),
                 format!("the rate of {output} depends on the unmeasured signal {signal}"),
             )
             .label(format!("{output} gives no information while {signal} is unknown"))
@@ -144,16 +144,10 @@ fn curvature(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: &LeftInve
     None
 }
 
-pub(super) fn refuted(
-    plant: &Plant,
-    index: usize,
-    places: &[Formula],
-    shown: &str,
-    stands_against: &str,
-) -> Diagnostic {
+pub(super) fn refuted(plant: &Plant, index: usize, summands: &[Formula], point: &str, other_forms: &str) -> Diagnostic {
     let arena = &plant.arena;
     let output = arena.name(plant.y[index].symbol);
-    let (first, others) = places.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
+    let (first, others) = summands.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
     let diagnostic = Diagnostic::error(
         Code::RegressionNonlinear,
         first,
@@ -162,12 +156,10 @@ pub(super) fn refuted(
     let diagnostic = others
         .iter()
         .fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "this term is not affine in phi either"));
-    diagnostic
-    .label("not an affine function of phi with coefficients in y and u")
-    .note(shown)
-    .note(stands_against)
-    .help("choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
-           an identity under `identities`")
+    diagnostic.label("not an affine function of phi with coefficients in y and u").note(point).note(other_forms).help(
+        "choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
+           an identity under `identities`",
+    )
 }
 
 /// A form of a regression that is not affine in z.
@@ -180,7 +172,7 @@ pub(super) enum OtherForm {
 }
 
 /// A rate that is not affine in z, but may be linear in the unknowns in another form.
-pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, shown: &str, form: OtherForm) -> Diagnostic {
+pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, point: &str, form: OtherForm) -> Diagnostic {
     let arena = &plant.arena;
     let output = arena.name(plant.y[index].symbol);
     let diagnostic = Diagnostic::error(
@@ -189,7 +181,7 @@ pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, shown:
         format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns"),
     )
     .label("not an affine function of phi with coefficients in y and u")
-    .note(shown);
+    .note(point);
     match form {
         OtherForm::Multiplied => diagnostic
             .note(

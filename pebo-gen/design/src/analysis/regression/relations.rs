@@ -75,7 +75,7 @@ pub(super) fn are_all(plant: &Plant, domain: &Domain, relations: &[Expr]) -> boo
     proved_rank(arena, domain, &rows, plant.z.len()) + independent_directions(plant, domain) >= plant.z.len()
 }
 
-/// The rank of the transform's derivative in x, as far as points show it.
+/// The rank of the transform's derivative in x, as far as points prove it.
 fn independent_directions(plant: &Plant, domain: &Domain) -> usize {
     let arena = &plant.arena;
     let slopes = |phi: Expr| plant.x.iter().map(|x| arena.derivative(phi, x.symbol)).collect::<Vec<Expr>>();

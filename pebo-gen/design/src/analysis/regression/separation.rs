@@ -48,7 +48,7 @@ pub(in crate::analysis) fn separate(
         return Ok(None);
     }
     let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
-    // Functions of known signals stay as they are written, where no relation among them is needed: `tanh(5*u)` by
+    // Functions of known signals are kept as written, where no relation among them is needed: `tanh(5*u)` by
     // exponentials overflows where it is 1.
     let mut frozen = OpaqueTerms::new(arena, &unknown);
     let signals = frozen.replace(&exprs);
@@ -286,9 +286,9 @@ fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> O
     let theta = arena.of_symbol(theta);
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (factor, symbol) in eta.iter().zip(symbols) {
-        if let Some(place) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
+        if let Some(index) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
             let symbol = arena.of_symbol(*symbol);
-            above.push(arena.mul(symbol, arena.of_symbol(symbols[place])));
+            above.push(arena.mul(symbol, arena.of_symbol(symbols[index])));
             below.push(arena.mul(symbol, symbol));
         }
     }

@@ -53,6 +53,6 @@ fn value_in_z(plant: &Plant, domain: &Domain, output: usize) -> Option<Expr> {
     let everywhere = domain.without_equations();
     let row = affine::of(plant, &everywhere, arena.sub(arena.of_symbol(output.symbol), value.expr)).ok()??;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
-    let tells = row[1..].iter().any(|factor| !arena.is_zero(*factor));
-    tells.then(|| arena.add(row[0], dot(arena, &row[1..], &z)))
+    let depends = row[1..].iter().any(|factor| !arena.is_zero(*factor));
+    depends.then(|| arena.add(row[0], dot(arena, &row[1..], &z)))
 }

@@ -21,7 +21,7 @@ fn codes(derivation: &Derivation) -> Vec<Code> {
 }
 
 #[test]
-fn an_angle_that_is_seen_up_to_half_its_period_is_not_determined() {
+fn an_angle_identified_up_to_half_its_period_is_not_determined() {
     let lines = "x: [q]\ny: [a]\nu: [w]\nf_x: {q: w}\nf_y: {a: sin(2*q)}\nphi: [2*q]";
     let (_, half) = derive(&format!("{lines}\nangles: {{q: 2*pi}}"));
     assert_eq!((half.outcome, codes(&half)), (Outcome::Rejected, vec![Code::UnknownUpToTurns]));
@@ -85,15 +85,15 @@ fn the_fundamental_matrix_is_never_singular() {
 }
 
 #[test]
-fn a_sign_stays_a_sign_where_code_computes_it() {
+fn a_sign_is_kept_where_code_computes_it() {
     // As a quotient of q and its absolute value it would be 0/0 at q = 0, where the author's formula has a value.
     for factor in ["2 + sign(q)*sqrt(abs(q))", "sign(q)*(1 - exp(-abs(q))) + 3", "sign(q)*max(abs(q) - 1, 0) + 1"] {
         let (plant, derivation) =
             derive(&format!("x: [p]\ny: [q]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: \"p*({factor})\"}}\nphi: [p]"));
         let regression = derivation.regression.result.unwrap();
         for formula in [regression.phi_0[0], regression.phi_1[0][0]] {
-            let shown = plant.arena.print(formula);
-            assert!(shown.contains("sign(q)") && !shown.contains("/q"), "{shown}");
+            let printed = plant.arena.print(formula);
+            assert!(printed.contains("sign(q)") && !printed.contains("/q"), "{printed}");
         }
     }
 }
@@ -112,12 +112,12 @@ fn values_of_parameters_that_hide_an_unknown_are_refuted() {
 }
 
 fn conditions((plant, derivation): &(Plant, Derivation)) -> Vec<String> {
-    let shown = derivation.conditions.iter();
-    shown.map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
+    let printed = derivation.conditions.iter();
+    printed.map(|(expr, relation)| format!("{} {}", plant.arena.print(*expr), relation.sign())).collect()
 }
 
 #[test]
-fn what_the_regression_alone_asks_is_listed() {
+fn conditions_of_the_regression_alone_are_listed() {
     // The rate of r is z1/q; the one state that is recovered needs no division.
     let lines = "x: [p, s]\ny: [q, r, v]\nu: [w]\nf_x: {p: w - p*w, s: w}\nf_y: {q: q*w, r: p, v: s}\nphi: [p*q, s]";
     let partial = derive(&format!("{lines}\nphi_left: {{s: z2}}"));
@@ -127,7 +127,7 @@ fn what_the_regression_alone_asks_is_listed() {
 }
 
 #[test]
-fn claims_about_no_point_that_was_found_stay_open() {
+fn claims_without_a_point_of_the_domain_are_undecided() {
     let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: w}\nf_y: {q: p}\nphi: [p]";
     let (_, anywhere) = derive(&format!("{lines}\nassume: [sin(q) + cos(3*q) > 1]"));
     assert_eq!(anywhere.outcome, Outcome::Accepted);
@@ -137,13 +137,13 @@ fn claims_about_no_point_that_was_found_stay_open() {
 }
 
 #[test]
-fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
+fn parameters_have_the_strongest_of_their_conditions() {
     let lines = "x: [p]\ny: [q]\nu: [w]\nf_x: {p: (a + b + c + d + e)*w}\nf_y: {q: p}\nphi: [p]\n\
                  parameters: {a: null, b: null, c: null, d: -3, e: 0}";
     let conditions = |assume: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!("{lines}\nassume: [{assume}]"));
-        let shown = derivation.conditions_on_parameters(&plant);
-        shown.iter().map(|(expr, sign)| format!("{} {sign:?}", plant.arena.print(*expr))).collect()
+        let printed = derivation.conditions_on_parameters(&plant);
+        printed.iter().map(|(expr, sign)| format!("{} {sign:?}", plant.arena.print(*expr))).collect()
     };
     let given = ["d Opposite(Positive)", "e Zero"];
     assert_eq!(conditions("q > 0"), ["a Any", "b Any", "c Any", given[0], given[1]]);
@@ -161,29 +161,29 @@ fn parameters_are_asked_for_the_strongest_that_is_assumed_of_them() {
 /// The normal form would overflow, lose its digits or divide by zero, and the author's own formula does not.
 #[test]
 fn results_are_in_the_functions_and_divisors_that_the_author_wrote() {
-    let shown = |lines: &str| -> (Vec<String>, Vec<String>) {
+    let printed = |lines: &str| -> (Vec<String>, Vec<String>) {
         let (plant, derivation) = derive(lines);
         assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}");
         let print = |e: &Expr| plant.arena.print(*e);
         let h = derivation.cascade.result.unwrap().h.iter().map(print).collect();
         (h, derivation.left_inverse.result.unwrap().x.iter().map(|(_, formula)| print(formula)).collect())
     };
-    let (h, _) = shown(
+    let (h, _) = printed(
         "parameters: {J: 2, k: 1, F: 1}\nx: [p]\ny: [q, w]\nu: [v]\nf_x: {p: (v - F*tanh(100*w) - k*p)/J}\n\
          f_y: {q: p, w: v}\nphi: [J*p + k*q]",
     );
     assert_eq!(h, ["v - F*tanh(100*w)"], "no quotient of exponentials, which overflow");
-    let (h, _) = shown(
+    let (h, _) = printed(
         "parameters: {J: 2, k: 1, T: 1}\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: (v - T*sin(24*q) - k*p)/J}\nf_y: {q: p}\n\
          phi: [J*p + k*q]",
     );
     assert_eq!(h, ["v - T*sin(24*q)"], "no polynomial of degree 24");
-    let (_, left) = shown(
+    let (_, left) = printed(
         "x: [p]\ny: [q, s]\nu: [v]\nassume: [q >= 0]\nf_x: {p: v}\nf_y: {q: 0, s: p + p*sqrt(q)}\nphi: [p*(1 + sqrt(q))]",
     );
     assert_eq!(left, ["z1/(sqrt(q) + 1)"], "regular at q = 1");
     // A two-link arm with its mass at the tip: z are the tip's velocities, the momenta J' z.
-    let (h, left) = shown(
+    let (h, left) = printed(
         "parameters: {m: 0.8, a: 0.5, b: 0.35}\nx: [x1, x2]\ny: [p, q]\nu: [u, v]\n\
          assume: [m > 0, a > 0, b > 0, sin(q) > 0]\n\
          mechanical:\n  M: [[m*(a^2 + b^2 + 2*a*b*cos(q)), m*(b^2 + a*b*cos(q))], [m*(b^2 + a*b*cos(q)), m*b^2]]\n  \
@@ -209,7 +209,7 @@ fn a_regression_under_a_generalised_cascade_has_the_extension_for_z() {
     assert_eq!(regression.phi_1.concat().iter().map(print).collect::<Vec<_>>(), ["Psi11 + 2*Psi21", "Psi12 + 2*Psi22"]);
 }
 
-/// Nothing but a relation of the components tells of theta, and that no input tells more.
+/// Only a relation of the components identifies theta, and no input adds to it.
 #[test]
 fn a_relation_alone_is_a_regression_under_a_generalised_cascade_too() {
     let (_, derivation) = derive("x: [a]\ny: [y]\nu: [u]\nf_x: {a: u - a}\nphi: [a, 2*a]");
@@ -219,7 +219,7 @@ fn a_relation_alone_is_a_regression_under_a_generalised_cascade_too() {
 
 /// The difference of two outputs makes b observable; c alone is hidden.
 #[test]
-fn a_refusal_counts_what_combinations_of_outputs_show() {
+fn a_refusal_counts_observable_combinations_of_outputs() {
     let (_, derivation) = derive(
         "x: [a, b, c]\ny: [p, q, r]\nu: [u]\nw: [w]\nf_x: {a: u, b: u, c: u}\n\
          f_y: {p: a, q: w, r: w + b}\nphi: [a, b, c]",
@@ -232,7 +232,7 @@ fn a_refusal_counts_what_combinations_of_outputs_show() {
 }
 
 #[test]
-fn where_a_combination_of_outputs_shows_nothing_is_said() {
+fn a_zero_of_a_combination_of_outputs_is_listed() {
     let (_, derivation) =
         derive("x: [a]\ny: [q, r]\nu: [u, v]\nw: [w]\nf_x: {a: v}\nf_y: {q: w, r: w + u*a}\nphi: [a]");
     assert_eq!(derivation.outcome, Outcome::Accepted);
@@ -266,7 +266,7 @@ fn a_term_is_blamed_with_the_factor_that_phi_gives_it() {
 }
 
 #[test]
-fn a_bend_is_shown_in_z_where_z_moves_freely() {
+fn curvature_is_found_in_z_where_z_moves_freely() {
     let words =
         |phi: &str| refusal(&format!("x: [a]\ny: [y]\nu: [u]\nf_x: {{a: u}}\nf_y: {{y: exp(-a^2)}}\nphi: [{phi}]"));
     assert!(words("a").contains("as a function of z, this rate has a second derivative"), "{}", words("a"));
@@ -274,7 +274,7 @@ fn a_bend_is_shown_in_z_where_z_moves_freely() {
 }
 
 #[test]
-fn what_is_left_of_a_linear_plant_is_the_row_that_no_output_shows() {
+fn the_remainder_of_a_linear_plant_is_its_unobservable_row() {
     let (plant, derivation) = derive("x: [a, b]\ny: [y]\nclass: pebo\nlti: {A11: [[1, 0], [0, 2]], A21: [[3, 0]]}");
     let residual = derivation.cascade.result.unwrap().residual;
     assert_eq!(residual.iter().map(|e| plant.arena.print(*e)).collect::<Vec<_>>(), ["0", "2*b"]);
@@ -291,7 +291,7 @@ fn a_regression_that_identifies_need_not_use_all_outputs() {
 }
 
 #[test]
-fn what_an_identity_settles_is_no_longer_refused() {
+fn a_claim_settled_by_an_identity_is_not_refused() {
     let (_, derivation) = derive(
         "x: [a, b]\ny: [c, d]\nu: [u, v]\nf_x: {a: u, b: v}\nf_y: {c: v}\nphi: [a, b]\n\
          identities: [(a - c)^2 + (b - d)^2 - 4]",
@@ -360,9 +360,9 @@ fn an_arm_whose_inverse_nobody_reads_is_refuted_at_points() {
     ));
     assert_eq!(derivation.cascade.verdict, Verdict::Refuted);
     let cascade = derivation.cascade.result.expect("residuals");
-    let shown: Vec<String> = cascade.residual.iter().map(|residual| plant.arena.print(*residual)).collect();
-    assert_eq!(shown[0], "0", "the momentum of the base is of use");
-    assert!(shown[1..].iter().all(|residual| residual.contains("q1'") && residual.len() < 5000), "{shown:?}");
+    let printed: Vec<String> = cascade.residual.iter().map(|residual| plant.arena.print(*residual)).collect();
+    assert_eq!(printed[0], "0", "the momentum of the base is of use");
+    assert!(printed[1..].iter().all(|residual| residual.contains("q1'") && residual.len() < 5000), "{printed:?}");
     let witness = cascade.witness.expect("points");
     assert!(witness.compared.is_some_and(|compared| compared.points.len() == 2));
     assert_eq!(derivation.left_inverse.verdict, Verdict::Proved);
@@ -370,11 +370,11 @@ fn an_arm_whose_inverse_nobody_reads_is_refuted_at_points() {
 
 /// By exponentials, as the normal form has it, a hyperbolic tangent overflows where it is 1.
 #[test]
-fn known_functions_beside_functions_of_theta_stay_as_they_are_written() {
+fn known_functions_beside_functions_of_theta_are_kept_as_written() {
     let (plant, derivation) =
         derive("x: [a]\ny: [y]\nu: [u]\nf_x: {a: u}\nf_y: {y: tanh(5*u) + exp(a)*cosh(u)}\nphi: [a]");
     let regression = derivation.regression.result.unwrap();
-    let shown = [regression.phi_0[0], regression.phi_1[0][0]].map(|expr| plant.arena.print(expr));
-    assert!(shown[0].contains("tanh(5*u)") && !shown[0].contains("exp"), "{shown:?}");
-    assert!(shown[1].contains("cosh(u)"), "{shown:?}");
+    let printed = [regression.phi_0[0], regression.phi_1[0][0]].map(|expr| plant.arena.print(expr));
+    assert!(printed[0].contains("tanh(5*u)") && !printed[0].contains("exp"), "{printed:?}");
+    assert!(printed[1].contains("cosh(u)"), "{printed:?}");
 }

@@ -8,14 +8,14 @@ use crate::source::{Code, Source};
 use pebo_cas::Budget;
 
 #[test]
-fn a_sign_that_is_listed_shows_what_does_not_vanish() {
+fn a_listed_sign_excludes_zeros() {
     let found = derive("x: [p]\ny: [r]\nu: [v]\nf_x: {p: v/(r + 1) + log(r)}\nf_y: {r: p}\nphi: [p]");
     assert_eq!((found.1.outcome, conditions(&found)), (Outcome::Accepted, vec!["r > 0".to_owned()]));
 }
 
-/// The second vanishes where the first does, which the first, with a denominator of any sign, does not show.
+/// The second vanishes where the first does; the denominator of the first has any sign.
 #[test]
-fn what_vanishes_together_is_listed_once() {
+fn factors_with_common_zeros_are_listed_once() {
     let found = derive("x: [p]\ny: [r]\nu: [v]\nf_x: {p: v/(1/r - 1) + 1/(r - 1)}\nf_y: {r: p}\nphi: [p]");
     assert_eq!(
         (found.1.outcome, conditions(&found)),
@@ -24,7 +24,7 @@ fn what_vanishes_together_is_listed_once() {
 }
 
 #[test]
-fn what_the_cascade_alone_asks_is_listed() {
+fn conditions_of_the_cascade_alone_are_listed() {
     let found =
         derive("x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: v, b: a}\nf_y: {q: 0, r: b}\nphi: [a*q, b]\nphi_left: {b: z2}");
     assert_eq!((found.1.outcome, conditions(&found)), (Outcome::Accepted, vec!["q != 0".to_owned()]));
@@ -32,7 +32,7 @@ fn what_the_cascade_alone_asks_is_listed() {
 
 /// The rates of q and s depend on b, but no combination identifies it.
 #[test]
-fn what_outputs_may_show_that_no_regression_uses_is_not_refuted() {
+fn observations_that_no_regression_uses_are_not_refuted() {
     let (_, derivation) = derive(
         "x: [a, b]\ny: [p, q, s]\nu: [u]\nw: [w]\nf_x: {a: u, b: u}\nf_y: {p: a, q: w, s: w^2 + b}\nphi: [a, b]",
     );
@@ -49,7 +49,7 @@ fn theta_may_be_identified_where_its_functions_are_not() {
 
 /// The factor of a^2 is zero, which no rule of algebra proves.
 #[test]
-fn what_could_not_be_decided_of_theta_is_said() {
+fn undecided_identifiability_of_theta_is_reported() {
     let zero = "((2 + sqrt(5))^(1/3) - (sqrt(5) - 2)^(1/3) - 1)";
     let (_, derivation) =
         derive(&format!("x: [a]\ny: [y]\nu: [u]\nf_x: {{a: 0}}\nf_y: {{y: {zero}*a^2 + u}}\nphi: [a]"));
@@ -87,15 +87,15 @@ fn a_state_that_is_known_up_to_steps_is_an_angle_of_that_period() {
         // And here it is the ratio of two frequencies, which is not found.
         (cosine("cos(q) + cos(sqrt(2)*q)"), open, warned.clone()),
     ];
-    for (model, outcome, told) in cases {
+    for (model, outcome, expected) in cases {
         let (_, derivation) = derive(&model);
-        assert_eq!((derivation.outcome, codes(&derivation)), (outcome, told), "{model}");
+        assert_eq!((derivation.outcome, codes(&derivation)), (outcome, expected), "{model}");
     }
 }
 
 /// The side of a non-smooth rate is known of x, not of z.
 #[test]
-fn a_rate_that_bends_is_what_it_is_on_the_domain() {
+fn a_non_smooth_rate_takes_its_form_on_the_domain() {
     for (assume, rate) in [("p > 5", "abs(p - 5)*p"), ("p < 0", "abs(p)*p"), ("p > 1", "max(p, 1)^2")] {
         let model =
             format!("x: [p]\ny: [q]\nu: [v]\nassume: [{assume}]\nf_x: {{p: v}}\nf_y: {{q: '{rate}'}}\nphi: [p]");
@@ -105,7 +105,7 @@ fn a_rate_that_bends_is_what_it_is_on_the_domain() {
 
 /// The rate of b is zero, which no rule of algebra proves.
 #[test]
-fn an_identity_that_stays_open_is_not_covered_by_one_that_is_proved() {
+fn an_undecided_identity_is_not_covered_by_a_proved_one() {
     let (_, derivation) = derive(
         "x: [p]\ny: [a, b, c]\nu: [v]\nf_x: {p: v}\n\
          f_y: {a: p, b: (2 + sqrt(5))^(1/3) - (sqrt(5) - 2)^(1/3) - 1, c: 0}\nphi: [p]\nidentities: [b, c]",
@@ -114,7 +114,7 @@ fn an_identity_that_stays_open_is_not_covered_by_one_that_is_proved() {
 }
 
 #[test]
-fn the_claim_in_which_the_budget_ends_is_the_last_that_is_told_of() {
+fn the_claim_in_which_the_budget_ends_is_the_last_with_diagnostics() {
     let text = "model: m\nx: [p]\ny: [q]\nu: [v]\nf_x: {p: v}\nf_y: {q: p}\nphi: [p]\n";
     let model = Model::parse(&Source::new("m", text).unwrap()).unwrap();
     let plant = Plant::resolve_within(&model, Budget::unlimited()).unwrap();
@@ -125,7 +125,7 @@ fn the_claim_in_which_the_budget_ends_is_the_last_that_is_told_of() {
 }
 
 #[test]
-fn the_way_back_asks_of_estimates_what_no_value_of_theirs_grants() {
+fn the_way_back_has_conditions_on_estimates() {
     let conditions = |phi: &str, left: &str| -> Vec<String> {
         let (plant, derivation) = derive(&format!(
             "x: [p]\ny: [q, r]\nu: [v]\nf_x: {{p: v}}\nf_y: {{q: p, r: v}}\nphi: [{phi}]\nphi_left: {{p: {left}}}"
@@ -154,7 +154,7 @@ fn an_identity_is_a_regression_where_the_rates_are_none() {
 
 /// On one of the lines nothing is observable, for ever.
 #[test]
-fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
+fn a_domain_of_several_components_is_not_judged_by_one_of_them() {
     let model = |identity: &str, rates: &str, assume: &str| {
         format!(
             "x: [p]\ny: [a, b, r]\nu: [v]\nidentities: [{identity}]\nassume: [{assume}]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]"
@@ -175,7 +175,7 @@ fn a_domain_of_several_parts_is_not_judged_by_one_of_them() {
 /// Roots of squares and absolute values in identities are non-smooth too, and parameters have both signs unless one is
 /// given.
 #[test]
-fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
+fn an_unknown_that_vanishes_on_one_cell_is_identifiable_on_the_other() {
     let model = |head: &str, rates: &str| format!("{head}\nx: [p]\nu: [v]\nf_x: {{p: v}}\nf_y: {{{rates}}}\nphi: [p]");
     let judged = |head: &str, rates: &str| {
         let (_, derivation) = derive(&model(head, rates));
@@ -192,8 +192,8 @@ fn what_vanishes_on_a_part_of_the_domain_is_seen_on_the_other() {
     // An angle of its own.
     assert_eq!(judged(outputs, "q: v, r: atan(2*tan(q))*p").0, Outcome::Accepted);
     assert_eq!(judged("y: [q, r]\nassume: [-1 < q < 1]", "q: v, r: (asin(sin(q)) + q)*p").0, Outcome::Accepted);
-    let bent = "y: [q, r, s]\nassume: [q > 0]\nidentities: [q - abs(r)]";
-    assert_eq!(judged(bent, "q: v*q, r: v*r, s: (q - r)*p"), (Outcome::Accepted, 1));
+    let non_smooth = "y: [q, r, s]\nassume: [q > 0]\nidentities: [q - abs(r)]";
+    assert_eq!(judged(non_smooth, "q: v*q, r: v*r, s: (q - r)*p"), (Outcome::Accepted, 1));
     for factor in ["sqrt(k^2) - k", "abs(k*q) - k*abs(q)"] {
         let of_parameter = |sign: &str| {
             let head = format!("{outputs}\nparameters: {{k: null}}\nassume: [{sign}]");

@@ -25,14 +25,14 @@ const PARTS_LIMIT: usize = LENGTH_LIMIT;
 
 /// A formula with its size, as a reader builds it.
 #[derive(Clone, Debug)]
-pub(in crate::model) struct Measured {
+pub(in crate::model) struct SizedFormula {
     pub(in crate::model) formula: Formula,
     depth: usize,
     degree: f64,
     parts: usize,
 }
 
-impl Measured {
+impl SizedFormula {
     /// A formula without parts.
     pub(in crate::model) fn leaf(formula: Formula) -> Self {
         let degree = match &formula.term {

@@ -94,8 +94,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_the_formula_that_was_read() {
-        for (text, shown) in [
+    fn a_printed_formula_reads_back_as_itself() {
+        for (text, printed) in [
             ("(E-(1-d)*v2)/L1", "(E - (1 - d)*v2)/L1"),
             ("-x^2 + (-x)**2", "-x^2 + (-x)^2"),
             ("2^3^2 - (2^3)^2", "2^3^2 - (2^3)^2"),
@@ -106,8 +106,8 @@ mod tests {
             ("atan2(sin(q), .5) + ln(x)", "atan2(sin(q), .5) + log(x)"),
             ("(((((x)))))", "x"),
         ] {
-            assert_eq!(parsed(text).to_string(), shown, "{text}");
-            assert_eq!(parsed(shown).to_string(), shown, "{text}");
+            assert_eq!(parsed(text).to_string(), printed, "{text}");
+            assert_eq!(parsed(printed).to_string(), printed, "{text}");
         }
     }
 

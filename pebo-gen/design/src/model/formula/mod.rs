@@ -35,7 +35,7 @@ mod tests;
 use crate::source::Span;
 use pebo_cas::Function;
 
-pub(super) use bounds::Measured;
+pub(super) use bounds::SizedFormula;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub(super) use lexer::greek;

@@ -2,7 +2,7 @@
 //!
 //! One thing with `complaints`: its methods word what the parser finds, of the parser's own state.
 
-use super::bounds::Measured;
+use super::bounds::SizedFormula;
 use super::lexer::{Kind, Lexer, Token};
 use super::sum::sum;
 use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, SpanMap, Term, complaints};
@@ -93,7 +93,7 @@ impl<'a> Parser<'a> {
     }
 
     /// An expression whose operators bind at least as tight as `least`.
-    fn expression(&mut self, least: u8) -> Result<Measured, Diagnostic> {
+    fn expression(&mut self, least: u8) -> Result<SizedFormula, Diagnostic> {
         self.depth += 1;
         if self.depth > DEPTH_LIMIT {
             return Err(self.too_deep());
@@ -111,13 +111,13 @@ impl<'a> Parser<'a> {
                 continue;
             }
             let span = left.formula.span.to(right.formula.span);
-            left = Measured::binary(operator, left, right, span)?;
+            left = SizedFormula::binary(operator, left, right, span)?;
         }
         self.depth -= 1;
         sum(left, terms)
     }
 
-    fn operand(&mut self) -> Result<Measured, Diagnostic> {
+    fn operand(&mut self) -> Result<SizedFormula, Diagnostic> {
         match self.next.kind {
             Kind::Number => self.number(),
             Kind::Name => self.name(),
@@ -127,32 +127,32 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn negative(&mut self) -> Result<Measured, Diagnostic> {
+    fn negative(&mut self) -> Result<SizedFormula, Diagnostic> {
         let sign = self.advance()?;
         let operand = self.expression(SIGN)?;
         let span = self.lexer.span(sign).to(operand.formula.span);
-        Measured::negative(operand, span)
+        SizedFormula::negative(operand, span)
     }
 
-    fn group(&mut self) -> Result<Measured, Diagnostic> {
+    fn group(&mut self) -> Result<SizedFormula, Diagnostic> {
         let open = self.advance()?;
         let mut inner = self.expression(SUM)?;
         inner.formula.span = self.close(open)?;
         Ok(inner)
     }
 
-    fn number(&mut self) -> Result<Measured, Diagnostic> {
+    fn number(&mut self) -> Result<SizedFormula, Diagnostic> {
         let token = self.advance()?;
         let span = self.lexer.span(token);
         let number = Decimal::parse(self.lexer.text(token), span)?;
-        Ok(Measured::leaf(Formula { span, term: Term::Number(number) }))
+        Ok(SizedFormula::leaf(Formula { span, term: Term::Number(number) }))
     }
 
-    fn name(&mut self) -> Result<Measured, Diagnostic> {
+    fn name(&mut self) -> Result<SizedFormula, Diagnostic> {
         let token = self.advance()?;
         let (span, name) = (self.lexer.span(token), self.lexer.text(token));
         if self.next.kind != Kind::Open {
-            return Ok(Measured::leaf(Formula { span, term: Term::Name(name.to_owned()) }));
+            return Ok(SizedFormula::leaf(Formula { span, term: Term::Name(name.to_owned()) }));
         }
         if name == "hat" {
             return self.estimate(span);
@@ -164,7 +164,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `hat(x)`, from the parenthesis on.
-    fn estimate(&mut self, hat: Span) -> Result<Measured, Diagnostic> {
+    fn estimate(&mut self, hat: Span) -> Result<SizedFormula, Diagnostic> {
         if self.estimates == Estimates::Refused {
             return Err(complaints::no_estimate(hat));
         }
@@ -175,11 +175,11 @@ impl<'a> Parser<'a> {
         let name = self.advance()?;
         let span = hat.to(self.close(open)?);
         let term = Term::Estimate(self.lexer.text(name).to_owned());
-        Ok(Measured::leaf(Formula { span, term }))
+        Ok(SizedFormula::leaf(Formula { span, term }))
     }
 
     /// A call, from the parenthesis on.
-    fn call(&mut self, function: Function, name: Span) -> Result<Measured, Diagnostic> {
+    fn call(&mut self, function: Function, name: Span) -> Result<SizedFormula, Diagnostic> {
         let open = self.advance()?;
         let mut arguments = Vec::new();
         if self.next.kind != Kind::Close {
@@ -195,7 +195,7 @@ impl<'a> Parser<'a> {
         if arguments.len() != function.row().arity {
             return Err(complaints::argument_count(function, arguments.len(), span));
         }
-        Measured::call(function, arguments, span)
+        SizedFormula::call(function, arguments, span)
     }
 
     /// Reads the parenthesis that closes `open`; returns the span of the whole.

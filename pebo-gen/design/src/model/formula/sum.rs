@@ -4,7 +4,7 @@
 //! the left, as it is read; a long one is runs of terms that do, added in pairs.
 
 use super::Operator;
-use super::bounds::Measured;
+use super::bounds::SizedFormula;
 use crate::source::Diagnostic;
 
 /// Terms from which on a sum is long. It takes fewer levels than a sum of as many.
@@ -14,7 +14,7 @@ const LONG: usize = 64;
 const RUN: usize = 16;
 
 /// The sum.
-pub(super) fn sum(first: Measured, rest: Vec<(Operator, Measured)>) -> Result<Measured, Diagnostic> {
+pub(super) fn sum(first: SizedFormula, rest: Vec<(Operator, SizedFormula)>) -> Result<SizedFormula, Diagnostic> {
     if rest.len() < LONG {
         return run(first, rest);
     }
@@ -26,7 +26,7 @@ pub(super) fn sum(first: Measured, rest: Vec<(Operator, Measured)>) -> Result<Me
         next = match rest.next() {
             Some((Operator::Subtract, term)) => {
                 let span = term.formula.span;
-                Some(Measured::negative(term, span)?)
+                Some(SizedFormula::negative(term, span)?)
             }
             other => other.map(|(_, term)| term),
         };
@@ -43,9 +43,9 @@ pub(super) fn sum(first: Measured, rest: Vec<(Operator, Measured)>) -> Result<Me
 }
 
 /// Terms grouped to the left.
-fn run(first: Measured, rest: Vec<(Operator, Measured)>) -> Result<Measured, Diagnostic> {
+fn run(first: SizedFormula, rest: Vec<(Operator, SizedFormula)>) -> Result<SizedFormula, Diagnostic> {
     rest.into_iter().try_fold(first, |left, (operator, right)| {
         let span = left.formula.span.to(right.formula.span);
-        Measured::binary(operator, left, right, span)
+        SizedFormula::binary(operator, left, right, span)
     })
 }

@@ -140,7 +140,7 @@ fn help_says_what_to_write() {
 }
 
 #[test]
-fn estimates_have_their_place() {
+fn estimates_are_refused_in_formulas_without_them() {
     let text = "a - hat(a)";
     let error = parse_formula(text, &SpanMap::verbatim(text, 0), Estimates::Refused);
     let error = error.expect_err("there is no estimate");
@@ -174,7 +174,7 @@ fn comparisons() {
 }
 
 #[test]
-fn every_node_has_its_place() {
+fn every_node_has_its_span() {
     let text = "-(a + b2)*sin( c )^2";
     let formula = parse(text).expect("it parses");
     let mut spans = Vec::new();
@@ -266,7 +266,7 @@ fn a_long_sum_is_not_deep() {
 }
 
 #[test]
-fn places_survive_what_yaml_does_to_a_text() {
+fn spans_survive_the_scalar_styles_of_yaml() {
     let cases = [
         ("a + bb*c", "a + bb*c"),
         ("'a + bb*c'", "a + bb*c"),
@@ -281,7 +281,7 @@ fn places_survive_what_yaml_does_to_a_text() {
         let names: Vec<&str> = formula.names().into_iter().map(|(_, span)| source.slice(span)).collect();
         assert_eq!(names, ["a", "bb", "c"], "{raw}");
     }
-    // An escape: the whole scalar stands for its parts.
+    // An escape: its parts have the span of the whole scalar.
     let source = Source::new("m", r#""a\x2bb""#).expect("it is small");
     let whole = Span::new(0, 8);
     assert_eq!(SpanMap::align("a+b", whole, &source).span(0, 1), whole);

@@ -10,7 +10,7 @@ use super::items::{self, Items};
 use super::refusal::{self, unsupported};
 use super::spans::TokenSpans;
 use super::value::{Field, Locals, Value};
-use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
+use crate::model::formula::{Decimal, Formula, Operator, PI, SizedFormula, Term};
 use crate::model::names::unknown_name;
 use crate::model::spanned::Spanned;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
                 UnOp::Neg(_) => {
                     let operand = self.number(&unary.expr, locals)?;
                     let span = self.spans.of(expr);
-                    Measured::negative(operand, span).map(Value::Number)
+                    SizedFormula::negative(operand, span).map(Value::Number)
                 }
                 _ => Err(unsupported(self.spans.of(&unary.op), "`!` is not an operator of formulas")
                     .help("use + - * / and `.powi(n)`")),
@@ -99,7 +99,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A value that is a number.
-    pub(super) fn number(&mut self, expr: &Expr, locals: &mut Locals) -> Result<Measured, Diagnostic> {
+    pub(super) fn number(&mut self, expr: &Expr, locals: &mut Locals) -> Result<SizedFormula, Diagnostic> {
         match self.value(expr, locals)? {
             Value::Number(number) => Ok(number),
             other => Err(unsupported(self.spans.of(expr), format!("this is {}, not a number", other.kind()))
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
         let value = self.value(expr, locals);
         self.diagnostics.keep(value).unwrap_or_else(|| {
             let span = self.spans.of(expr);
-            Value::Number(Measured::leaf(Formula { span, term: Term::Number(Decimal::zero()) }))
+            Value::Number(SizedFormula::leaf(Formula { span, term: Term::Number(Decimal::zero()) }))
         })
     }
 
@@ -129,22 +129,22 @@ impl<'a> Reader<'a> {
     }
 
     /// A whole number where Rust means one.
-    pub(super) fn whole(&mut self, text: &str, expr: &Expr) -> Result<Measured, Diagnostic> {
+    pub(super) fn whole(&mut self, text: &str, expr: &Expr) -> Result<SizedFormula, Diagnostic> {
         let span = self.spans.of(expr);
         let digits = Decimal::parse(text.trim_start_matches('-'), span)?;
-        let number = Measured::leaf(Formula { span, term: Term::Number(digits) });
-        if text.starts_with('-') { Measured::negative(number, span) } else { Ok(number) }
+        let number = SizedFormula::leaf(Formula { span, term: Term::Number(digits) });
+        if text.starts_with('-') { SizedFormula::negative(number, span) } else { Ok(number) }
     }
 
     pub(super) fn binary(
         &mut self,
         operator: Operator,
-        left: Measured,
-        right: Measured,
+        left: SizedFormula,
+        right: SizedFormula,
         whole: &Expr,
-    ) -> Result<Measured, Diagnostic> {
+    ) -> Result<SizedFormula, Diagnostic> {
         let span = self.spans.of(whole);
-        Measured::binary(operator, left, right, span)
+        SizedFormula::binary(operator, left, right, span)
     }
 
     /// Runs a function of the module.
@@ -198,7 +198,7 @@ impl<'a> Reader<'a> {
         }
         let span = self.spans.of(expr);
         let number = Decimal::parse(&text, span)?;
-        Ok(Value::Number(Measured::leaf(Formula { span, term: Term::Number(number) })))
+        Ok(Value::Number(SizedFormula::leaf(Formula { span, term: Term::Number(number) })))
     }
 
     /// A name: a local one, a constant of the module, or one of the mathematical constants.

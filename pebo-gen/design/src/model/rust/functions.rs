@@ -9,7 +9,7 @@ use super::items;
 use super::refusal::{self, unsupported};
 use super::spans::TokenSpans;
 use super::value::{Locals, Value};
-use crate::model::formula::{Decimal, Formula, Measured, Operator, PI, Term};
+use crate::model::formula::{Decimal, Formula, Operator, PI, SizedFormula, Term};
 use crate::source::{Code, Diagnostic, Span, listed, nearest};
 use pebo_cas::Function;
 
@@ -45,19 +45,19 @@ const OWN: &[&str] = &[
     "to_degrees",
 ];
 
-type Constant = fn(Span) -> Result<Measured, Diagnostic>;
+type Constant = fn(Span) -> Result<SizedFormula, Diagnostic>;
 
 /// The constants of `core::f64::consts` that have an exact meaning.
 const CONSTANTS: &[(&str, Constant)] = &[
     ("PI", |at| Ok(pi(at))),
-    ("TAU", |at| Measured::binary(Operator::Multiply, decimal("2", at)?, pi(at), at)),
-    ("FRAC_PI_2", |at| Measured::binary(Operator::Divide, pi(at), decimal("2", at)?, at)),
-    ("FRAC_PI_3", |at| Measured::binary(Operator::Divide, pi(at), decimal("3", at)?, at)),
-    ("FRAC_PI_4", |at| Measured::binary(Operator::Divide, pi(at), decimal("4", at)?, at)),
-    ("FRAC_PI_6", |at| Measured::binary(Operator::Divide, pi(at), decimal("6", at)?, at)),
-    ("FRAC_PI_8", |at| Measured::binary(Operator::Divide, pi(at), decimal("8", at)?, at)),
-    ("FRAC_1_PI", |at| Measured::binary(Operator::Divide, decimal("1", at)?, pi(at), at)),
-    ("FRAC_2_PI", |at| Measured::binary(Operator::Divide, decimal("2", at)?, pi(at), at)),
+    ("TAU", |at| SizedFormula::binary(Operator::Multiply, decimal("2", at)?, pi(at), at)),
+    ("FRAC_PI_2", |at| SizedFormula::binary(Operator::Divide, pi(at), decimal("2", at)?, at)),
+    ("FRAC_PI_3", |at| SizedFormula::binary(Operator::Divide, pi(at), decimal("3", at)?, at)),
+    ("FRAC_PI_4", |at| SizedFormula::binary(Operator::Divide, pi(at), decimal("4", at)?, at)),
+    ("FRAC_PI_6", |at| SizedFormula::binary(Operator::Divide, pi(at), decimal("6", at)?, at)),
+    ("FRAC_PI_8", |at| SizedFormula::binary(Operator::Divide, pi(at), decimal("8", at)?, at)),
+    ("FRAC_1_PI", |at| SizedFormula::binary(Operator::Divide, decimal("1", at)?, pi(at), at)),
+    ("FRAC_2_PI", |at| SizedFormula::binary(Operator::Divide, decimal("2", at)?, pi(at), at)),
     ("SQRT_2", |at| applied(Function::Sqrt, decimal("2", at)?, at)),
     ("FRAC_1_SQRT_2", |at| applied(Function::Sqrt, decimal("0.5", at)?, at)),
     ("LN_2", |at| applied(Function::Log, decimal("2", at)?, at)),
@@ -134,7 +134,7 @@ fn applied_method(
     reader: &mut Reader<'_>,
     name: &str,
     ident: &syn::Ident,
-    receiver: Measured,
+    receiver: SizedFormula,
     arguments: &[&Expr],
     whole: &Expr,
     locals: &mut Locals,
@@ -148,36 +148,41 @@ fn applied_method(
         "powi" => {
             expected(1)?;
             let exponent = exponent(reader, arguments[0])?;
-            Measured::binary(Operator::Power, receiver, exponent, at)?
+            SizedFormula::binary(Operator::Power, receiver, exponent, at)?
         }
         "powf" => {
             expected(1)?;
             let exponent = reader.number(arguments[0], locals)?;
-            Measured::binary(Operator::Power, receiver, exponent, at)?
+            SizedFormula::binary(Operator::Power, receiver, exponent, at)?
         }
         "recip" => {
             expected(0)?;
-            Measured::binary(Operator::Divide, decimal("1", at)?, receiver, at)?
+            SizedFormula::binary(Operator::Divide, decimal("1", at)?, receiver, at)?
         }
         "mul_add" => {
             expected(2)?;
             let (factor, term) = (reader.number(arguments[0], locals)?, reader.number(arguments[1], locals)?);
-            Measured::binary(Operator::Add, Measured::binary(Operator::Multiply, receiver, factor, at)?, term, at)?
+            SizedFormula::binary(
+                Operator::Add,
+                SizedFormula::binary(Operator::Multiply, receiver, factor, at)?,
+                term,
+                at,
+            )?
         }
         "hypot" => {
             expected(1)?;
             let other = reader.number(arguments[0], locals)?;
-            let square = |a: Measured| Measured::binary(Operator::Power, a, decimal("2", at)?, at);
-            applied(Function::Sqrt, Measured::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
+            let square = |a: SizedFormula| SizedFormula::binary(Operator::Power, a, decimal("2", at)?, at);
+            applied(Function::Sqrt, SizedFormula::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
         }
         "exp2" => {
             expected(0)?;
-            Measured::binary(Operator::Power, decimal("2", at)?, receiver, at)?
+            SizedFormula::binary(Operator::Power, decimal("2", at)?, receiver, at)?
         }
         "log10" | "log2" => {
             expected(0)?;
             let base = decimal(name.trim_start_matches("log"), at)?;
-            Measured::binary(
+            SizedFormula::binary(
                 Operator::Divide,
                 applied(Function::Log, receiver, at)?,
                 applied(Function::Log, base, at)?,
@@ -186,13 +191,13 @@ fn applied_method(
         }
         "to_radians" => {
             expected(0)?;
-            let degree = Measured::binary(Operator::Divide, pi(at), decimal("180", at)?, at)?;
-            Measured::binary(Operator::Multiply, receiver, degree, at)?
+            let degree = SizedFormula::binary(Operator::Divide, pi(at), decimal("180", at)?, at)?;
+            SizedFormula::binary(Operator::Multiply, receiver, degree, at)?
         }
         "to_degrees" => {
             expected(0)?;
-            let radian = Measured::binary(Operator::Divide, decimal("180", at)?, pi(at), at)?;
-            Measured::binary(Operator::Multiply, receiver, radian, at)?
+            let radian = SizedFormula::binary(Operator::Divide, decimal("180", at)?, pi(at), at)?;
+            SizedFormula::binary(Operator::Multiply, receiver, radian, at)?
         }
         // Not differentiable where Rust's 1 at zero differs from the 0 of formulas.
         "signum" => {
@@ -202,13 +207,13 @@ fn applied_method(
         "min" | "max" => {
             expected(1)?;
             let function = if name == "min" { Function::Min } else { Function::Max };
-            Measured::call(function, vec![receiver, reader.number(arguments[0], locals)?], at)?
+            SizedFormula::call(function, vec![receiver, reader.number(arguments[0], locals)?], at)?
         }
         "clamp" => {
             expected(2)?;
             let (least, most) = (reader.number(arguments[0], locals)?, reader.number(arguments[1], locals)?);
-            let above = Measured::call(Function::Max, vec![receiver, least], at)?;
-            Measured::call(Function::Min, vec![above, most], at)?
+            let above = SizedFormula::call(Function::Max, vec![receiver, least], at)?;
+            SizedFormula::call(Function::Min, vec![above, most], at)?
         }
         "sin_cos" => {
             expected(0)?;
@@ -218,7 +223,7 @@ fn applied_method(
         "log" => {
             expected(1)?;
             let base = reader.number(arguments[0], locals)?;
-            Measured::binary(
+            SizedFormula::binary(
                 Operator::Divide,
                 applied(Function::Log, receiver, at)?,
                 applied(Function::Log, base, at)?,
@@ -235,14 +240,14 @@ fn applied_method(
             for argument in arguments {
                 operands.push(reader.number(argument, locals)?);
             }
-            Measured::call(function, operands, at)?
+            SizedFormula::call(function, operands, at)?
         }
     };
     Ok(Value::Number(number))
 }
 
 /// The exponent of `powi`: an integer, which is one in Rust too.
-fn exponent(reader: &mut Reader<'_>, expr: &Expr) -> Result<Measured, Diagnostic> {
+fn exponent(reader: &mut Reader<'_>, expr: &Expr) -> Result<SizedFormula, Diagnostic> {
     if let Some(text) = reader.items.whole(expr) {
         return reader.whole(&text, expr);
     }
@@ -286,14 +291,14 @@ fn no_such_method(name: &str, place: Span) -> Diagnostic {
     }
 }
 
-fn pi(at: Span) -> Measured {
-    Measured::leaf(Formula { span: at, term: Term::Name(PI.to_owned()) })
+fn pi(at: Span) -> SizedFormula {
+    SizedFormula::leaf(Formula { span: at, term: Term::Name(PI.to_owned()) })
 }
 
-fn decimal(text: &str, at: Span) -> Result<Measured, Diagnostic> {
-    Ok(Measured::leaf(Formula { span: at, term: Term::Number(Decimal::parse(text, at)?) }))
+fn decimal(text: &str, at: Span) -> Result<SizedFormula, Diagnostic> {
+    Ok(SizedFormula::leaf(Formula { span: at, term: Term::Number(Decimal::parse(text, at)?) }))
 }
 
-fn applied(function: Function, argument: Measured, at: Span) -> Result<Measured, Diagnostic> {
-    Measured::call(function, vec![argument], at)
+fn applied(function: Function, argument: SizedFormula, at: Span) -> Result<SizedFormula, Diagnostic> {
+    SizedFormula::call(function, vec![argument], at)
 }

@@ -44,7 +44,7 @@ pub(super) fn read(
     spans: &mut TokenSpans,
     diagnostics: &mut Diagnostics,
 ) -> Option<Model> {
-    // The first place is the default of a diagnostic.
+    // The first span is the default of a diagnostic.
     let name = Spanned { span: spans.of(&module.ident), value: module.ident.unraw().to_string() };
     if module.content.is_none() {
         diagnostics.push(
@@ -75,7 +75,7 @@ pub(super) fn read(
     if diagnostics.has_errors() {
         return None;
     }
-    let mut pass = Pass { reader: Reader::new(&items, spans, diagnostics), signals, module: name.span };
+    let mut pass = ModuleReader { reader: Reader::new(&items, spans, diagnostics), signals, module: name.span };
     let (parameters, define) = pass.constants();
     let f_x =
         pass.required("f_x", "pub fn f_x(x: &X, y: &Y, u: &U) -> X { X { .. } }").map(|item| pass.entries(item, 0));
@@ -118,7 +118,7 @@ pub(super) fn read(
     })
 }
 
-struct Pass<'a> {
+struct ModuleReader<'a> {
     reader: Reader<'a>,
     signals: Signals,
     /// The module's name.
@@ -127,7 +127,7 @@ struct Pass<'a> {
 
 type Parameters = Vec<Entry<Option<Spanned<Decimal>>>>;
 
-impl<'a> Pass<'a> {
+impl<'a> ModuleReader<'a> {
     /// Constants that are decimals are parameters; computed ones are definitions.
     fn constants(&mut self) -> (Parameters, Vec<Entry<Formula>>) {
         let (mut parameters, mut computed) = (Vec::new(), Vec::new());

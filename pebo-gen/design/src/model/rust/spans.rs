@@ -7,8 +7,8 @@ use crate::source::Span;
 
 /// Runs of tokens, by their spans.
 ///
-/// The place with the number n has the span `n..n + 1`; a span that covers several reaches from the first token of
-/// the first place to the last token of the last one. Compilers do not tell macros the offsets of tokens, so these are
+/// Run number n has the span `n..n + 1`; a span that covers several reaches from the first token of
+/// the first run to the last token of the last one. Compilers do not tell macros the offsets of tokens, so these are
 /// numbers of our own.
 #[derive(Debug, Default)]
 pub struct TokenSpans {
@@ -21,13 +21,13 @@ impl TokenSpans {
         Self::default()
     }
 
-    /// A new place: the span of these tokens.
+    /// Adds a run: these tokens.
     pub(super) fn of(&mut self, tokens: &impl ToTokens) -> Span {
         self.spans.push(tokens.to_token_stream());
         Span::new(self.spans.len() - 1, self.spans.len())
     }
 
-    /// A new place: a span of the compiler.
+    /// Adds a run: a span of the compiler.
     pub(super) fn at(&mut self, span: proc_macro2::Span) -> Span {
         self.of(&Ident::new("here", span))
     }
@@ -40,7 +40,7 @@ impl TokenSpans {
         Some((first, last))
     }
 
-    /// The tokens of a span's first place, as a person would write them on one line.
+    /// The tokens of a span's first run, as a person would write them on one line.
     pub fn text(&self, span: Span) -> String {
         let text = self.spans.get(span.start).map(ToString::to_string).unwrap_or_default();
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,6 +1,6 @@
 //! The value of an expression of Rust.
 
-use crate::model::formula::{Formula, Measured, Term};
+use crate::model::formula::{Formula, SizedFormula, Term};
 use crate::model::spanned::Spanned;
 use crate::source::Span;
 
@@ -8,7 +8,7 @@ use crate::source::Span;
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     /// A number.
-    Number(Measured),
+    Number(SizedFormula),
     /// A struct.
     Record(Vec<Field>),
     /// An array or a tuple.
@@ -28,7 +28,7 @@ pub(super) type Locals = Vec<(String, Value)>;
 impl Value {
     /// A declared name.
     pub(super) fn name(name: &str, span: Span) -> Self {
-        Self::Number(Measured::leaf(Formula { span, term: Term::Name(name.to_owned()) }))
+        Self::Number(SizedFormula::leaf(Formula { span, term: Term::Name(name.to_owned()) }))
     }
 
     /// A struct whose fields are declared names.

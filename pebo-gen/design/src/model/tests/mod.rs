@@ -130,7 +130,7 @@ fn every_estimator_has_its_settings() {
         let observer = parse(&format!("{CUK}observer: {{{section}}}\n")).expect(section).observer;
         assert_eq!(observer.estimator(), estimator, "{section}");
         for key in estimator.needs() {
-            assert!(observer.place(key).is_some(), "{section}: {key}");
+            assert!(observer.span_of(key).is_some(), "{section}: {key}");
         }
     }
     for (estimator, name) in Estimator::ALL.iter().zip(Estimator::NAMES) {
@@ -139,7 +139,7 @@ fn every_estimator_has_its_settings() {
 }
 
 #[test]
-fn every_name_and_formula_has_its_place() {
+fn every_name_and_formula_has_its_span() {
     let text = CUK.to_owned() + REST;
     let source = source(&text);
     let model = Model::parse(&source).expect("it is right");

@@ -13,7 +13,7 @@ fn set(text: &str, settings: &[&str]) -> Result<Model, Vec<Diagnostic>> {
 }
 
 /// The model without spans.
-fn told(model: &Model) -> String {
+fn without_spans(model: &Model) -> String {
     let text = format!("{model:?}");
     let mut parts = text.split("Span {");
     let first = parts.next().unwrap_or_default().to_owned();
@@ -43,7 +43,7 @@ fn a_setting_is_what_the_file_would_say() {
         assert!(text.contains(from), "{from}");
         let written = parse(&text.replacen(from, to, 1)).unwrap_or_else(|found| panic!("{to}: {found:#?}"));
         let called = set(&text, &[setting]).unwrap_or_else(|found| panic!("{setting}: {found:#?}"));
-        assert_eq!(told(&called), told(&written), "{setting}");
+        assert_eq!(without_spans(&called), without_spans(&written), "{setting}");
     }
     // The last of two counts; a list of parameters has room for values.
     let listed =
@@ -59,7 +59,7 @@ fn a_setting_is_what_the_file_would_say() {
 }
 
 #[test]
-fn what_cannot_be_set_is_told_in_the_call() {
+fn a_refused_setting_is_reported_in_the_call() {
     let text = CUK.to_owned() + REST;
     let cases: &[(&str, Code, &str, &str)] = &[
         ("L1", WrongShape, "L1", "`NAME=VALUE`"),

@@ -25,9 +25,9 @@ fn a_formula_with_time_has_it_as_its_last_input() {
         ("f_x: {p: f}\nf_y: {q: p}\nrecording: {t: t/1000, f: t}", false),
     ] {
         let found = inputs(&format!("{rest}\n{formulas}"));
-        let told = (vec!["f".to_owned(), "t".to_owned()], Some("s".to_owned()), Some("t".to_owned()));
+        let declared = (vec!["f".to_owned(), "t".to_owned()], Some("s".to_owned()), Some("t".to_owned()));
         let none = (vec!["f".to_owned()], None, None);
-        assert_eq!(found, if expected { told } else { none }, "{formulas}");
+        assert_eq!(found, if expected { declared } else { none }, "{formulas}");
     }
 }
 

@@ -10,7 +10,7 @@ use crate::source::{Diagnostics, Source};
 
 /// Parses every formula of the document; nothing if the model has no name.
 pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagnostics) -> Option<Model> {
-    let mut pass = Pass { source, diagnostics, estimates: Estimates::Refused };
+    let mut pass = FormulaParser { source, diagnostics, estimates: Estimates::Refused };
     let define = pass.entries(document.define);
     let assume = document.assume.iter().filter_map(|text| pass.comparison(text)).collect();
     let f_x = pass.entries(document.f_x);
@@ -52,14 +52,14 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
     })
 }
 
-struct Pass<'a> {
+struct FormulaParser<'a> {
     source: &'a Source,
     diagnostics: &'a mut Diagnostics,
     /// Permission for `hat()` in the section at hand.
     estimates: Estimates,
 }
 
-impl Pass<'_> {
+impl FormulaParser<'_> {
     fn formula(&mut self, text: &Text) -> Formula {
         let spans = SpanMap::align(&text.value, text.span, self.source);
         let parsed = parse_formula(&text.value, &spans, self.estimates);

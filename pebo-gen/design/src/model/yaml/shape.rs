@@ -23,8 +23,8 @@ pub(super) fn fit<'a>(root: &'a Node, diagnostics: &'a mut Diagnostics) -> Optio
         Content::Map(entries) => {
             // The line that names the model is where something is missing from the model.
             let title = entries.iter().find(|(key, _)| key.text == "model").or(entries.first());
-            let place = title.map_or(root.span, |(key, _)| key.span);
-            Some(fitter.record(entries, MODEL, place))
+            let span = title.map_or(root.span, |(key, _)| key.span);
+            Some(fitter.record(entries, MODEL, span))
         }
         Content::Null => {
             fitter.diagnostics.push(refusal::empty());
@@ -159,8 +159,8 @@ impl<'a> Fitter<'a> {
         None
     }
 
-    /// A map with known keys; `place` is the span of a missing one.
-    fn record(&mut self, entries: &'a [(tree::Key, Node)], keys: &'static [Key], place: Span) -> Value {
+    /// A map with known keys; `span` is the span of a missing one.
+    fn record(&mut self, entries: &'a [(tree::Key, Node)], keys: &'static [Key], span: Span) -> Value {
         let mut fields = Mapping::new();
         let class = entries.iter().map(|(name, _)| name).find(|name| {
             let key = keys.iter().find(|key| key.name == name.text);
@@ -194,7 +194,7 @@ impl<'a> Fitter<'a> {
             if !entries.iter().any(|(name, _)| name.text == key.name) {
                 let message = format!("the key `{}` is missing", key.name);
                 self.diagnostics.push(
-                    Diagnostic::error(Code::MissingKey, place, message)
+                    Diagnostic::error(Code::MissingKey, span, message)
                         .help(format!("add it, for example `{}`", key.example)),
                 );
             }
@@ -366,10 +366,10 @@ fn sequence(items: impl IntoIterator<Item = Option<Value>>) -> Value {
 }
 
 fn spanned(text: &str, span: Span) -> Value {
-    fields([("value", text.into()), ("span", place(span))])
+    fields([("value", text.into()), ("span", span_value(span))])
 }
 
-fn place(span: Span) -> Value {
+fn span_value(span: Span) -> Value {
     fields([("start", span.start.into()), ("end", span.end.into())])
 }
 
@@ -379,7 +379,7 @@ fn entry(name: &str, span: Span, value: Value) -> Value {
 
 /// Rows of formulas, with the depth of the lists that they were written in.
 fn matrix(span: Span, depth: u64, rows: Value) -> Value {
-    fields([("span", place(span)), ("depth", depth.into()), ("rows", rows)])
+    fields([("span", span_value(span)), ("depth", depth.into()), ("rows", rows)])
 }
 
 fn piece(from: Value, formula: Value) -> Value {

@@ -131,7 +131,7 @@ impl Grower<'_> {
             }
             Event::Alias(_) | Event::UnresolvedAlias(_) => {
                 self.diagnostics.push(refusal::alias(span, self.source.slice(span)));
-                self.place(Node { span, content: Content::Broken });
+                self.attach(Node { span, content: Content::Broken });
             }
             Event::Scalar(text, style, ..) => self.scalar(text.into_owned(), style, span),
             Event::SequenceStart(style, ..) => self.open(style, span, Growth::List(Vec::new())),
@@ -164,7 +164,7 @@ impl Grower<'_> {
         };
         // The event after a block ends it.
         let end = if frame.flow { end } else { last.unwrap_or(frame.span) };
-        self.place(Node { span: frame.span.to(end), content });
+        self.attach(Node { span: frame.span.to(end), content });
     }
 
     fn scalar(&mut self, text: String, style: ScalarStyle, span: Span) {
@@ -183,16 +183,16 @@ impl Grower<'_> {
             {
                 frame.skip_to = Some(cut.end);
                 self.diagnostics.push(refusal::cut(cut, self.source.slice(cut)));
-                return self.place(Node { span: cut, content: Content::Broken });
+                return self.attach(Node { span: cut, content: Content::Broken });
             }
         }
         let null = plain && matches!(text.as_str(), "" | "~" | "null" | "Null" | "NULL");
         let content = if null { Content::Null } else { Content::Scalar(text) };
-        self.place(Node { span, content });
+        self.attach(Node { span, content });
     }
 
     /// Puts a complete value where it belongs.
-    fn place(&mut self, node: Node) {
+    fn attach(&mut self, node: Node) {
         let Some(frame) = self.frames.last_mut() else {
             self.root = Some(node);
             return;

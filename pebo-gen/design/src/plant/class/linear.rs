@@ -188,15 +188,15 @@ fn by_cofactors(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> (Matr
 fn denominators(context: &ClassContext<'_>, matrix: &Matrix) -> Result<Vec<Expr>, Obstacle> {
     let arena = context.arena;
     let field = Field::over(arena, &context.domain.facts, &matrix.entries())?;
-    let mut seen: Vec<Poly> = Vec::new();
+    let mut found_denominators: Vec<Poly> = Vec::new();
     let mut found: Vec<Expr> = Vec::new();
     for entry in matrix.entries() {
         let fraction = field.fraction(entry)?;
         // Entries have few different ones: showing a long one takes longer than comparing it.
-        if seen.contains(fraction.denominator()) {
+        if found_denominators.contains(fraction.denominator()) {
             continue;
         }
-        seen.push(fraction.denominator().clone());
+        found_denominators.push(fraction.denominator().clone());
         let below = field.show(&field.of_polynomial(fraction.denominator())?);
         if arena.as_number(below).is_none() && !found.contains(&below) {
             found.push(below);

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_diagonal_is_short_however_large() {
+    fn a_diagonal_inverse_is_short_however_large() {
         let arena = Arena::new();
         let symbol = |i: usize, j: usize| arena.variable(&format!("a{i}{j}"));
         let diagonal = Matrix::build(9, 9, |i, j| if i == j { symbol(i, j) } else { arena.zero() });

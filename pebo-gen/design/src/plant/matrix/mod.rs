@@ -107,8 +107,8 @@ impl Matrix {
     /// The matrix with each entry in normal form.
     pub fn normal(&self, arena: &Arena, facts: &Facts) -> Result<Self, Obstacle> {
         let field = Field::of_long_sums(arena, facts, &self.entries())?;
-        let shown = |row: &Vec<Expr>| row.iter().map(|e| Ok(field.show(&field.fraction(*e)?))).collect();
-        Ok(Self { rows: self.rows.iter().map(shown).collect::<Result<_, Obstacle>>()? })
+        let printed = |row: &Vec<Expr>| row.iter().map(|e| Ok(field.show(&field.fraction(*e)?))).collect();
+        Ok(Self { rows: self.rows.iter().map(printed).collect::<Result<_, Obstacle>>()? })
     }
 
     /// The inverse in normal form; none if the determinant is zero everywhere.
@@ -143,8 +143,8 @@ impl Matrix {
     /// A basis of the columns v with `self * v = 0`.
     pub fn null_space(&self, arena: &Arena, facts: &Facts) -> Result<Vec<Vec<Expr>>, Obstacle> {
         self.echelon(arena, facts, |field, echelon| {
-            let shown = |vector: &Vec<Fraction>| vector.iter().map(|e| field.show(e)).collect();
-            echelon.null_space().iter().map(shown).collect()
+            let printed = |vector: &Vec<Fraction>| vector.iter().map(|e| field.show(e)).collect();
+            echelon.null_space().iter().map(printed).collect()
         })
     }
 

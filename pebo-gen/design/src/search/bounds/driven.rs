@@ -14,10 +14,10 @@ use crate::search::problem::Problem;
 
 /// For each state, true if the slope by it is provably free of x.
 pub(in crate::search) fn driven(problem: &Problem<'_>) -> Vec<bool> {
-    shown(problem).unwrap_or_else(|_| vec![false; problem.x.len()])
+    free_slopes(problem).unwrap_or_else(|_| vec![false; problem.x.len()])
 }
 
-fn shown(problem: &Problem<'_>) -> Result<Vec<bool>, Obstacle> {
+fn free_slopes(problem: &Problem<'_>) -> Result<Vec<bool>, Obstacle> {
     let arena = problem.arena;
     let along = |symbols: &[Symbol], input| -> Vec<Expr> {
         let rates = symbols.iter().filter_map(|symbol| problem.rates.get(symbol));

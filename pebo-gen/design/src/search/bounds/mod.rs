@@ -272,7 +272,7 @@ fn certificate(
         transposed.insert(images.iter().map(|row| row[column]).collect());
     }
     let width = rows.first()?.len() - split;
-    let mut seen = ResidueRows::new(prime, width);
+    let mut independent = ResidueRows::new(prime, width);
     let mut found = Vec::new();
     let mut vectors = transposed.null_space();
     vectors.sort_by_key(|(_, vector)| vector.iter().filter(|e| !e.is_zero()).count());
@@ -283,7 +283,7 @@ fn certificate(
                 .zip(images)
                 .fold(Residue::ZERO, |sum, (factor, row)| prime.add(sum, prime.mul(*factor, row[column])))
         };
-        if !seen.insert((split..split + width).map(image).collect()) {
+        if !independent.insert((split..split + width).map(image).collect()) {
             continue;
         }
         let support: Vec<usize> = (0..rows.len()).filter(|row| !vector[*row].is_zero()).collect();

@@ -109,9 +109,9 @@ fn special(arena: &Arena, formulas: &[Expr]) -> (Vec<Symbol>, Vec<Symbol>) {
     let (mut within, mut others) = (Vec::new(), Vec::new());
     let mut plain: BTreeSet<Symbol> = BTreeSet::new();
     let mut open = formulas.to_vec();
-    let mut seen = BTreeSet::new();
+    let mut visited = BTreeSet::new();
     while let Some(expr) = open.pop() {
-        if !seen.insert(expr) {
+        if !visited.insert(expr) {
             continue;
         }
         match arena.node(expr) {

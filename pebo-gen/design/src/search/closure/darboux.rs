@@ -63,11 +63,11 @@ fn shapes(problem: &Problem<'_>, symbols: &[Symbol]) -> Vec<Shape> {
         let later: Vec<Expr> = symbols[index + 1..].iter().map(|symbol| arena.of_symbol(*symbol)).collect();
         let others: Vec<Expr> =
             symbols.iter().filter(|symbol| *symbol != state).map(|symbol| arena.of_symbol(*symbol)).collect();
-        let shape = |power, leads: Vec<Expr>, rests: &[Expr]| {
+        let shape = |power, leads: Vec<Expr>, remainders: &[Expr]| {
             let mut unknown = Unknown::default();
             // The first coefficient is 1.
             let lead = leads.split_first().map(|(first, more)| arena.add(*first, unknown.combination(problem, more)));
-            let rest = unknown.combination(problem, rests);
+            let rest = unknown.combination(problem, remainders);
             Shape { state: *state, power, lead: lead.unwrap_or(arena.one()), rest, coefficients: unknown.0 }
         };
         first.push(shape(1, Vec::new(), &[&[arena.one()], later.as_slice()].concat()));
@@ -83,8 +83,8 @@ fn shapes(problem: &Problem<'_>, symbols: &[Symbol]) -> Vec<Shape> {
             .collect();
         let of_state: Vec<Expr> = affine.iter().map(|factor| arena.mul(*factor, arena.of_symbol(*state))).collect();
         second.push(shape(1, Vec::new(), &quadratic));
-        for (place, other) in others.iter().enumerate() {
-            let leads = [&[*other], &others[place + 1..], one.as_slice()].concat();
+        for (index, other) in others.iter().enumerate() {
+            let leads = [&[*other], &others[index + 1..], one.as_slice()].concat();
             second.push(shape(1, leads, &quadratic));
         }
         second.push(shape(2, Vec::new(), &[of_state, quadratic].concat()));

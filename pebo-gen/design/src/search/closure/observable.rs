@@ -32,8 +32,8 @@ pub(in crate::search) fn observable(problem: &Problem<'_>, functions: &[Expr]) -
     loop {
         // The rate of a combination, as a combination.
         let along = |(_, vector): (usize, &[Fraction])| -> Vec<Expr> {
-            let shown: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
-            (0..columns).map(|to| dot(arena, &shown, &column(flow, to))).collect()
+            let printed: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
+            (0..columns).map(|to| dot(arena, &printed, &column(flow, to))).collect()
         };
         let rates: Vec<Vec<Expr>> = span.rows().map(along).collect();
         let known = span.rows().map(|(_, vector)| vector.to_vec()).collect();
@@ -47,8 +47,8 @@ pub(in crate::search) fn observable(problem: &Problem<'_>, functions: &[Expr]) -
         return Ok(functions.to_vec());
     }
     let combined = |(_, vector): (usize, &[Fraction])| {
-        let shown: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
-        dot(arena, &shown, functions)
+        let printed: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
+        dot(arena, &printed, functions)
     };
     Ok(span.rows().map(combined).collect())
 }

@@ -79,18 +79,18 @@ impl Connection {
             let alone = entries.iter().enumerate().all(|(column, e)| Some(column) == pivot || e.is_zero());
             alone.then_some(())
         };
-        let shown = |row: &[Fraction]| row.iter().map(|e| field.show(&e.opposite())).collect::<Vec<Expr>>();
+        let printed = |row: &[Fraction]| row.iter().map(|e| field.show(&e.opposite())).collect::<Vec<Expr>>();
         let mut shift = vec![None; outputs];
         for (pivot, row) in shifts.rows() {
             let (left, right) = row.split_at(outputs);
-            shift[pivot] = only_t(left, Some(pivot)).map(|()| shown(right));
+            shift[pivot] = only_t(left, Some(pivot)).map(|()| printed(right));
         }
         let mut gamma = vec![vec![None; outputs]; states];
         for (pivot, row) in slopes.rows() {
             let mut row = row.to_vec();
             for (column, known) in shifts.rows() {
-                let place = states * outputs + column;
-                let factor = row[place].clone();
+                let offset = states * outputs + column;
+                let factor = row[offset].clone();
                 for (entry, known) in row[states * outputs..].iter_mut().zip(known) {
                     *entry = field.sub(entry, &field.mul(&factor, known)?)?;
                 }
@@ -98,7 +98,7 @@ impl Connection {
             let (left, right) = row.split_at(states * outputs);
             let (middle, right) = right.split_at(outputs);
             if only_t(left, Some(pivot)).and(only_t(middle, None)).is_some() {
-                gamma[pivot / outputs][pivot % outputs] = Some(shown(right));
+                gamma[pivot / outputs][pivot % outputs] = Some(printed(right));
             }
         }
         Ok(Self { gamma, shift })

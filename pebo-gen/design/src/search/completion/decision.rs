@@ -95,8 +95,8 @@ impl RankDecision {
         };
         let transposed = (0..functions).map(|column| lift.iter().map(|row| row[column].clone()).collect()).collect();
         let (echelon, _) = Echelon::of(&field, transposed, states)?;
-        let shown = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect();
-        Ok(Some(Self { relations: echelon.null_space().iter().map(shown).collect(), transforms }))
+        let printed = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect();
+        Ok(Some(Self { relations: echelon.null_space().iter().map(printed).collect(), transforms }))
     }
 }
 

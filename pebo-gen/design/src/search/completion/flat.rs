@@ -53,10 +53,10 @@ impl<'a> Flat<'a> {
             let block = self.block(&functions)?;
             let mut kept = Vec::new();
             for mut solution in std::mem::take(&mut found) {
-                let rests = self.rests(&functions, &solution)?;
-                if rests.iter().flatten().any(|e| !arena.is_zero(*e)) {
+                let remainders = self.remainders(&functions, &solution)?;
+                if remainders.iter().flatten().any(|e| !arena.is_zero(*e)) {
                     let Some(block) = &block else { continue };
-                    let Some(factors) = self.varied(block, &rests)? else { continue };
+                    let Some(factors) = self.varied(block, &remainders)? else { continue };
                     for (function, row) in functions.iter().zip(&block.values) {
                         solution[*function] = dot(arena, row, &factors);
                     }
@@ -247,13 +247,13 @@ impl<'a> Flat<'a> {
     }
 
     /// The factors, functions of y, of a block's own solutions in one with these further terms in its derivatives.
-    fn varied(&self, block: &Block, rests: &[Vec<Expr>]) -> Result<Option<Vec<Expr>>, Obstacle> {
+    fn varied(&self, block: &Block, remainders: &[Vec<Expr>]) -> Result<Option<Vec<Expr>>, Obstacle> {
         let problem = self.problem;
         let mut factors = Vec::new();
         for row in &block.inverse {
             let mut slopes = Vec::new();
             for (index, symbol) in problem.y.iter().enumerate() {
-                let rest: Vec<Expr> = rests.iter().map(|rest| rest[index]).collect();
+                let rest: Vec<Expr> = remainders.iter().map(|rest| rest[index]).collect();
                 slopes.push((*symbol, self.tidied(dot(problem.arena, row, &rest))?));
             }
             let Some(factor) = potential(problem, &slopes) else { return Ok(None) };
@@ -263,7 +263,7 @@ impl<'a> Flat<'a> {
     }
 
     /// For each of these functions, the contribution of the others to its derivatives.
-    fn rests(&self, functions: &[usize], solution: &[Expr]) -> Result<Vec<Vec<Expr>>, Obstacle> {
+    fn remainders(&self, functions: &[usize], solution: &[Expr]) -> Result<Vec<Vec<Expr>>, Obstacle> {
         let arena = self.problem.arena;
         let along = |row: &Vec<Expr>| {
             let others = row.iter().zip(solution).enumerate().filter(|(index, _)| !functions.contains(index));

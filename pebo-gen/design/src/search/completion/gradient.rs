@@ -111,10 +111,10 @@ impl GradientEquations {
             *row = slopes.chain(kept.iter().map(|function| &row[all * directions + function])).cloned().collect();
         }
         // The derivatives of a gradient agree.
-        let places = self.gradient.iter().filter_map(|(of, by)| Some((kept.iter().position(|kept| kept == of)?, *by)));
-        let places: Vec<(usize, usize)> = places.collect();
-        for (index, (first, j)) in places.iter().enumerate() {
-            for (second, k) in &places[index + 1..] {
+        let entries = self.gradient.iter().filter_map(|(of, by)| Some((kept.iter().position(|kept| kept == of)?, *by)));
+        let entries: Vec<(usize, usize)> = entries.collect();
+        for (index, (first, j)) in entries.iter().enumerate() {
+            for (second, k) in &entries[index + 1..] {
                 let mut row = vec![Fraction::zero(); functions * (directions + 1)];
                 row[first * directions + k] = Fraction::one();
                 row[second * directions + j] = Fraction::one().opposite();

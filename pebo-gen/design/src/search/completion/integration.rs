@@ -39,10 +39,10 @@ pub(in crate::search) fn integrated(problem: &Problem<'_>) -> Result<Vec<Expr>, 
     if completed.solutions != Solutions::AsFunctions {
         return Ok(Vec::new());
     }
-    let shown = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect::<Vec<Expr>>();
-    let slopes = completed.slopes.iter().map(|rows| rows.iter().map(shown).collect()).collect();
+    let printed = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect::<Vec<Expr>>();
+    let slopes = completed.slopes.iter().map(|rows| rows.iter().map(printed).collect()).collect();
     let flat = Flat::new(problem, slopes);
-    let lift: Vec<Vec<Expr>> = completed.lift.iter().map(shown).collect();
+    let lift: Vec<Vec<Expr>> = completed.lift.iter().map(printed).collect();
     let mut found = Vec::new();
     for solution in flat.solutions()? {
         let values: Vec<Expr> =

@@ -1,7 +1,7 @@
 //! Completes linear partial differential equations for functions of y to an integrable system.
 //!
 //! ```text
-//! rows over [dw | w] -> what holds of w alone is solved -> mixed derivatives agree -> and so on -> dw = G w, flat
+//! rows over [dw | w] -> equations in w alone are solved -> mixed derivatives agree -> and so on -> dw = G w, flat
 //! ```
 //!
 //! In: equations of first order for unknown functions w of y, linear and homogeneous, over a field of functions of y.

@@ -184,9 +184,9 @@ impl Rules<'_> {
             _ => None,
         };
         let most: usize = factors.iter().filter_map(terms).try_fold(1, usize::checked_mul)?;
-        let place = factors.iter().position(|factor| terms(factor).is_some()).filter(|_| most <= MOST_TERMS)?;
-        let Node::Sum(sum) = arena.node(factors[place].0) else { return None };
-        let others = factors.iter().enumerate().filter(|(index, _)| *index != place);
+        let position = factors.iter().position(|factor| terms(factor).is_some()).filter(|_| most <= MOST_TERMS)?;
+        let Node::Sum(sum) = arena.node(factors[position].0) else { return None };
+        let others = factors.iter().enumerate().filter(|(index, _)| *index != position);
         let others = arena.multiply(&Rational::ONE, others.map(|(_, factor)| factor.clone()));
         let products = sum.terms.iter().map(|(term, c)| arena.scale(arena.mul(*term, others), c));
         self.of(arena.sum(products.chain([arena.mul(arena.number(sum.constant.clone()), others)])))
@@ -252,7 +252,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn powers_of_differences_stay_powers() {
+    fn powers_of_differences_are_kept() {
         let arena = Arena::new();
         let [q, r, k] = ["q", "r", "k"].map(|name| arena.variable(name));
         let symbol = arena.as_symbol(q).unwrap();

@@ -88,8 +88,8 @@ impl Quotient<'_> {
             columns.push((function, column));
         }
         for ((factor, _), (rest, own)) in factors.iter().zip(&others) {
-            let shown = field.show(&field.of_polynomial(factor)?);
-            columns.push((logarithm(arena, self.domain, shown), own.mul(&repeated, work)?));
+            let printed = field.show(&field.of_polynomial(factor)?);
+            columns.push((logarithm(arena, self.domain, printed), own.mul(&repeated, work)?));
             if let Some(arc) = self.arc(factor)? {
                 columns.push((arc, rest.mul(&repeated, work)?));
             }

@@ -32,9 +32,9 @@ pub(super) struct Restriction {
 
 /// The observations of the rows with their derivatives on a trajectory.
 pub(super) struct Observation {
-    /// Rows that show as much as all derivatives do.
+    /// Rows of the same rank as all derivatives.
     pub(super) stack: Vec<Vec<Expr>>,
-    /// Directions that they do not show.
+    /// Directions that are unobservable in them.
     pub(super) hidden: Vec<Vec<Expr>>,
 }
 
@@ -82,7 +82,7 @@ impl TrajectoryProblem<'_> {
         let hidden = match hidden {
             Some(hidden) => hidden,
             None if rank == unknowns => Vec::new(),
-            // As many derivatives as there are unknowns show all that any do.
+            // As many derivatives as there are unknowns have the full rank.
             None if arena.postorder(&stack.concat()).len() > MOST_PARTS => return Err(Obstacle::TooLarge),
             None => null_vectors(arena, &domain, &stack, unknowns)?,
         };

@@ -71,14 +71,14 @@ fn a_plant_that_moves_may_need_no_input() {
     assert_eq!(
         of(frame),
         [
-            "the unknowns are identified without excitation by the inputs, even at rest, but for these motions",
+            "the unknowns are identified without excitation by the inputs, even at rest, but for these trajectories",
             "while `w = 0`, only `z1` is identified"
         ]
     );
 }
 
 #[test]
-fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
+fn losses_under_constant_inputs_at_a_value_of_one_or_of_a_parameter_are_listed() {
     let wind = "x: [a, k]\ny: [p, q]\nu: [v, r]\nassume: [v > 0]\nf_x: {a: 0, k: 0}\n\
                 f_y: {p: k*v*cos(q) + a, q: r}\nphi: [a, k]";
     let lines = of(wind);
@@ -87,7 +87,7 @@ fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
     let sum = "parameters: [k, m]\nassume: [k > 0, m > 0, v > 0, w > 0]\nx: [a, b]\ny: [r]\nu: [v, w]\n\
                f_x: {a: -k*a, b: -m*b}\nf_y: {r: v*a + w*b}\nphi: [a, b]";
     let lines = of(sum);
-    assert!(lines[0].ends_with("even at rest, but for these motions"), "{lines:?}");
+    assert!(lines[0].ends_with("even at rest, but for these trajectories"), "{lines:?}");
     assert!(lines[1].starts_with("while the inputs are constant and `k = m`, only"), "{lines:?}");
     // q = v is invariant, while r moves.
     let pursuit = "x: [p, s]\ny: [r, q]\nu: [v]\nf_x: {p: -v*p, s: -q*s}\nf_y: {r: p + s, q: q - v}\nphi: [p, s]";
@@ -97,13 +97,13 @@ fn what_constant_inputs_hide_at_a_value_of_one_or_of_a_parameter_is_listed() {
 
 #[test]
 fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
-    let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these motions";
+    let but = "the unknowns are identified without excitation by the inputs, even at rest, but for these trajectories";
     let cells = |rates: &str| format!("parameters: {{k: 2}}\nx: [a, b]\ny: [r]\nu: [v, w]\n{rates}\nphi: [a, b]");
-    let told = |rates: &str| of(&cells(&format!("{rates}\nf_y: {{r: a + b}}")));
-    assert_eq!(told("f_x: {a: v*a, b: w*b}"), [but, "while `v = w`, only `z1 + z2` is identified"]);
-    assert_eq!(told("f_x: {a: -k*v*a, b: -k*b}"), [but, "while `v = 1`, only `z1 + z2` is identified"]);
+    let report = |rates: &str| of(&cells(&format!("{rates}\nf_y: {{r: a + b}}")));
+    assert_eq!(report("f_x: {a: v*a, b: w*b}"), [but, "while `v = w`, only `z1 + z2` is identified"]);
+    assert_eq!(report("f_x: {a: -k*v*a, b: -k*b}"), [but, "while `v = 1`, only `z1 + z2` is identified"]);
     assert_eq!(
-        told("f_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}"),
+        report("f_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}"),
         [but, "while `v*(v - 1) - 1 = 0`, it was not decided what is identified"]
     );
     let turned = "x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: q*a, b: -q*b}\nf_y: {q: v, r: a + b}\nphi: [a, b]";
@@ -112,7 +112,7 @@ fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
 
 /// A heat exchanger with an unknown area: without a difference of temperatures it transfers nothing, for ever at rest.
 #[test]
-fn what_several_signals_hide_at_rest_is_listed() {
+fn losses_by_several_signals_at_rest_are_listed() {
     let exchanger = "x: [T, k]\ny: [S]\nu: [v, w]\nassume: [k > 0]\nf_x: {T: v - T - k*(T - S), k: 0}\n\
                      f_y: {S: w - S + k*(T - S)}\nphi: [k, k*(T + S)]";
     let lines = of(exchanger);
@@ -124,8 +124,8 @@ fn what_several_signals_hide_at_rest_is_listed() {
 
 /// No trajectory is passed over in silence: a statement on all trajectories provably holds on all.
 #[test]
-fn motions_that_several_signals_keep_to_are_listed_or_not_spoken_of() {
-    let almost = "the unknowns are identified on almost every motion, also with constant inputs";
+fn trajectories_kept_by_several_signals_are_listed_or_not_claimed() {
+    let almost = "the unknowns are identified on almost every trajectory, also with constant inputs";
     // A limit cycle, on which q^2 + w^2 is 1.
     let cycle = "x: [p, s]\ny: [q, w, r]\nf_x: {p: 0, s: 0}\nphi: [p, s]\n\
                  f_y: {q: w + q*(1 - q^2 - w^2), w: -q + w*(1 - q^2 - w^2), r: p + s*(q^2 + w^2)}";
@@ -139,7 +139,7 @@ fn motions_that_several_signals_keep_to_are_listed_or_not_spoken_of() {
 
 /// Competing species at the concentration at which both grow alike.
 #[test]
-fn outputs_at_which_the_plant_rests_unseen_are_listed() {
+fn outputs_at_unobservable_equilibria_are_listed() {
     let species = "x: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: -q*p, s: -s}\nf_y: {q: v - q, r: p + q*s}\nphi: [p, s]";
     let lines = of(species);
     assert!(lines.iter().any(|line| line.contains("q - 1 = 0`, it was not decided")), "{lines:?}");
@@ -150,24 +150,24 @@ fn outputs_at_which_the_plant_rests_unseen_are_listed() {
 #[test]
 fn parameters_that_may_make_functions_of_signals_equal_or_constant_are_spoken_of() {
     let open = "it was not worked out for which special values of the parameters this is not so";
-    let told = |rate: &str| {
+    let report = |rate: &str| {
         let lines = format!(
             "parameters: [k, m]\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: {rate}}}\nphi: [p, s]"
         );
         of(&lines).iter().any(|line| line == open)
     };
     for rate in ["p*sin(k*v) + s*sin(m*v)", "p*tanh(k*v) + s*v", "p*sqrt(1 + k*v^2) + s", "p*exp(k*v) + s*exp(m*v)"] {
-        assert!(told(rate), "{rate}");
+        assert!(report(rate), "{rate}");
     }
     // k = m = 0, which no single equation says.
-    assert!(told("p*v + (k + m*q)*s"));
+    assert!(report("p*v + (k + m*q)*s"));
     let both = "parameters: [k, m]\nx: [p, s, r]\ny: [q, w]\nu: [v]\nf_x: {p: s, s: 0, r: 0}\nphi: [p, s, r]";
     for rates in ["{q: m*r, w: p + w*k*r}", "{q: m*r, w: p + v*k*r}", "{q: (m + k)*r, w: p + w*k*r}"] {
         let lines = of(&format!("{both}\nf_y: {rates}"));
         assert!(lines.iter().any(|line| line == open), "{rates}: {lines:?}");
     }
     for rate in ["p*sin(v) + s*cos(v)", "p*k*v + s*sin(v)", "p*tanh(v + k) + s*v"] {
-        assert!(!told(rate), "{rate}");
+        assert!(!report(rate), "{rate}");
     }
     // k - 2*m and k + m vanish at once only where k does.
     let signed = "parameters: [k, m]\nassume: [k > 0]\nx: [p, s]\ny: [q]\nu: [v, w]\nf_x: {p: 0, s: 0}\nphi: [p, s]";
@@ -194,7 +194,7 @@ fn outputs_that_no_input_moves_from_a_blind_value_are_listed() {
 
 /// A cell of the domain in which all unknowns are identifiable needs its excitation there too.
 #[test]
-fn parts_of_the_domain_say_what_has_to_move_in_them() {
+fn cells_of_the_domain_state_their_excitation() {
     let of_rate = |rate: &str, other: &str| {
         of(&format!("x: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: {other}}}\nf_y: {{q: \"{rate}\"}}\nphi: [p, s]"))[0]
             .clone()
@@ -204,20 +204,20 @@ fn parts_of_the_domain_say_what_has_to_move_in_them() {
 }
 
 #[test]
-fn a_column_that_vanishes_with_functions_of_inputs_is_told() {
+fn a_column_that_vanishes_with_functions_of_inputs_is_listed() {
     let constant = |factor: &str| {
         of(&format!("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {{p: 0, s: 0}}\nf_y: {{q: p*({factor}) + s*r}}\nphi: [p, s]"))
     };
-    for (factor, told) in [
+    for (factor, expected) in [
         ("sin(v)", "`sin(v) = 0`"),
         ("1 - cos(v)", "`cos(v) - 1 = 0`"),
         ("v^2 - 2", "`v^2 - 2 = 0`"),
         ("v^2 + r^2 - 1", "`v^2 + r^2 - 1 = 0`"),
     ] {
         let lines = constant(factor);
-        let told = format!("while {told}, it was not decided what is identified");
+        let expected = format!("while {expected}, it was not decided what is identified");
         assert!(
-            lines.contains(&told) && lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()),
+            lines.contains(&expected) && lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()),
             "{lines:?}"
         );
     }
@@ -226,15 +226,15 @@ fn a_column_that_vanishes_with_functions_of_inputs_is_told() {
 }
 
 #[test]
-fn what_hides_on_each_side_of_a_bend_is_told() {
+fn losses_on_each_side_of_a_non_smooth_point_are_listed() {
     let friction = "parameters: [J]\nassume: [J > 0]\nx: [b, fc]\ny: [w]\nu: [tau]\nf_x: {b: 0, fc: 0}\n\
                     f_y: {w: (tau - b*w - fc*sign(w))/J}\nphi: [b, fc]";
     let lines = of(friction);
-    for told in [
+    for expected in [
         "while `w > 0` and the plant rests, only `z2 + w*z1` is identified",
         "while `w < 0` and the plant rests, only `z2 - w*z1` is identified",
     ] {
-        assert!(lines.iter().any(|line| line == told), "{lines:?}");
+        assert!(lines.iter().any(|line| line == expected), "{lines:?}");
     }
     // A result that is the same on both sides is reported for both.
     let lines = of("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {p: 0, s: 0}\nf_y: {q: p*abs(v) + s*r}\nphi: [p, s]");

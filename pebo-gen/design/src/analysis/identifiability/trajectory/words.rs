@@ -27,19 +27,19 @@ impl Trajectories {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
             }
             (Some(true), true, true) => {
-                "the unknowns are identified without excitation by the inputs, even at rest, but for these motions"
+                "the unknowns are identified without excitation by the inputs, even at rest, but for these trajectories"
             }
             (Some(true), true, false) => {
-                "the unknowns are identified without excitation by the inputs on almost every motion, and almost wherever \
+                "the unknowns are identified without excitation by the inputs on almost every trajectory, and almost wherever \
                  the plant rests"
             }
             (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
             (Some(true), false, false) => {
-                "the unknowns are identified on almost every motion, also with constant inputs"
+                "the unknowns are identified on almost every trajectory, also with constant inputs"
             }
             (Some(false), ..) => "the unknowns are identified under excitation: keep the inputs varying",
             (None, ..) => {
-                "the unknowns are identified on almost every motion; it was not decided whether the inputs have to vary"
+                "the unknowns are identified on almost every trajectory; it was not decided whether the inputs have to vary"
             }
         };
         let blind = self.blind.iter().map(|blind| blind.line(plant));
@@ -52,17 +52,17 @@ impl Trajectories {
     fn of_parts(&self) -> &'static str {
         match (self.by_itself, self.at_rest) {
             (Some(true), true) => {
-                "the unknowns are identified on almost every motion that does not stay where one of these holds"
+                "the unknowns are identified on almost every trajectory that does not stay where one of these holds"
             }
             (Some(true), false) => {
-                "the unknowns are identified on almost every motion that neither rests nor stays where one of these holds"
+                "the unknowns are identified on almost every trajectory that neither rests nor stays where one of these holds"
             }
             (Some(false), _) => {
                 "the unknowns are identified under excitation that does not stay where one of these holds: keep the inputs \
                  varying"
             }
             (None, _) => {
-                "the unknowns are identified on almost every motion that does not stay where one of these holds; it was not \
+                "the unknowns are identified on almost every trajectory that does not stay where one of these holds; it was not \
                  decided whether the inputs have to vary"
             }
         }
