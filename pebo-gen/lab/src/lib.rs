@@ -43,7 +43,8 @@ pub use closed_loop::failure::Failure;
 #[cfg(feature = "simulate")]
 pub use closed_loop::scenario::Scenario;
 #[cfg(feature = "simulate")]
-pub use closed_loop::trace::{Trace, draw};
+pub use closed_loop::sheet::draw;
+pub use closed_loop::trace::Trace;
 #[cfg(feature = "simulate")]
 pub use observe::certainty::Certainty;
 #[cfg(feature = "simulate")]

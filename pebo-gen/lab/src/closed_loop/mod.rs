@@ -14,6 +14,7 @@ pub(crate) mod run;
 pub(crate) mod scenario;
 mod scope;
 mod sensor;
+pub(crate) mod sheet;
 pub(crate) mod signal;
 pub(crate) mod trace;
 mod truth;

@@ -2,9 +2,6 @@
 
 use std::fmt::Write as _;
 
-use super::scenario::Scenario;
-use crate::figure::Sheet;
-use crate::figure::label::Label;
 use crate::summary::Summary;
 
 /// The course of a run. Serialises to `columns`, the names, and `values`, row by row.
@@ -86,20 +83,5 @@ pub(crate) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
         write!(text, "{value}")
     } else {
         write!(text, "{value:e}")
-    }
-}
-
-/// Draws the panels of a scenario with the curves of its run.
-pub fn draw(trace: &Trace, scenario: &Scenario) -> String {
-    let duration = scenario.timing.at(scenario.timing.samples);
-    let title = (scenario.title.as_str(), title(scenario));
-    Sheet { title, time: ([0.0, duration], Label::name("t")), panels: &scenario.panels, curves: &trace.curves }.draw()
-}
-
-fn title(scenario: &Scenario) -> Label {
-    let title = Label::text(&scenario.title);
-    match &scenario.feedback {
-        Some(feedback) => title.remark(&format!("feedback: {feedback}")),
-        None => title,
     }
 }

@@ -1,4 +1,4 @@
-use crate::closed_loop::trace::draw;
+use crate::closed_loop::sheet::draw;
 use crate::figure::curve::Curve;
 use crate::{Overrides, Scenario};
 
