@@ -8,21 +8,21 @@
 //! 2015). [`derive()`] proves or refutes its claims one by one; [`Derived::emit`] writes the observer if all
 //! are proved. [`answer()`] is both in one call, with all that front ends show, as one value that serialises.
 
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 mod answer;
 #[cfg(feature = "yaml")]
 mod builder;
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 mod certificate;
 mod derived;
 pub mod emit;
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 mod page;
 pub mod report;
 #[cfg(feature = "simulate")]
 pub mod simulate;
 
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 pub use answer::{Answer, Request, Section, Solution, Stage, Standing, TypesetFormulas, answer, solve};
 #[cfg(feature = "simulate")]
 pub use answer::{FinalError, Run, RunRequest, Tape, replay};

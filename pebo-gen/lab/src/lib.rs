@@ -44,6 +44,7 @@ pub use closed_loop::failure::Failure;
 pub use closed_loop::scenario::Scenario;
 #[cfg(feature = "simulate")]
 pub use closed_loop::sheet::draw;
+#[cfg(feature = "simulate")]
 pub use closed_loop::trace::Trace;
 #[cfg(feature = "simulate")]
 pub use observe::certainty::Certainty;

@@ -40,18 +40,18 @@ use pebo_design::program::{UndeclaredSymbol, lower};
 
 /// An emitted module. Serialises to its text and the name of its type.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[cfg_attr(feature = "answer", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Emitted {
     /// The items of the module, its documentation as inner attributes.
-    #[cfg_attr(feature = "yaml", serde(skip))]
+    #[cfg_attr(feature = "answer", serde(skip))]
     pub tokens: TokenStream,
     /// The same as text, in rustfmt's layout.
     pub text: String,
     /// The name of the type that implements `Model`.
     pub type_name: String,
     /// The cost of each function: its name with its result, and the operations of one call.
-    #[cfg_attr(feature = "yaml", serde(skip))]
+    #[cfg_attr(feature = "answer", serde(skip))]
     pub costs: Vec<(String, Cost)>,
     /// The digits that the functions keep.
     pub accuracy: Accuracy,

@@ -5,31 +5,31 @@
 
 mod expansion;
 mod growth;
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 mod json;
 pub(crate) mod notes;
 pub(crate) mod remarks;
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 mod search;
 mod text;
 
 use pebo_cas::{Arena, Expr, Relation};
 
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 pub use json::Report;
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 pub use search::{SearchReport, search_summary};
 pub use text::summary;
 
 /// The JSON schema of a [`Report`].
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 pub const CHECK_SCHEMA: &str = include_str!("check.schema.json");
 
 /// The JSON schema of a [`SearchReport`].
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 pub const SOLVE_SCHEMA: &str = include_str!("solve.schema.json");
 
-#[cfg(feature = "yaml")]
+#[cfg(feature = "answer")]
 fn printed(arena: &Arena, exprs: &[Expr]) -> Vec<String> {
     exprs.iter().map(|e| arena.print(*e)).collect()
 }

@@ -54,7 +54,7 @@ pub enum Excitation {
 pub(crate) struct Gramian<const N: usize> {
     unknowns: usize,
     forgetting: f64,
-    gramian: SMatrix<f64, N, N>,
+    value: SMatrix<f64, N, N>,
     /// True while its size measures the amount of data.
     is_measure: bool,
 }
@@ -62,7 +62,7 @@ pub(crate) struct Gramian<const N: usize> {
 impl<const N: usize> Gramian<N> {
     /// The Gramian before any data; forgetting is in 1/s.
     pub(crate) fn new(unknowns: usize, forgetting: f64) -> Self {
-        Self { unknowns, forgetting, gramian: SMatrix::zeros(), is_measure: forgetting > 0.0 }
+        Self { unknowns, forgetting, value: SMatrix::zeros(), is_measure: forgetting > 0.0 }
     }
 
     /// Takes the regressor of a step.
@@ -71,29 +71,29 @@ impl<const N: usize> Gramian<N> {
         for i in 0..self.unknowns {
             for j in 0..=i {
                 let product = regressor.column(i).dot(&regressor.column(j)) * dt;
-                self.gramian[(i, j)] = self.gramian[(i, j)] * kept + product;
-                self.gramian[(j, i)] = self.gramian[(i, j)];
+                self.value[(i, j)] = self.value[(i, j)] * kept + product;
+                self.value[(j, i)] = self.value[(i, j)];
             }
         }
     }
 
     /// Follows a change of the unknown, as an estimator does.
     pub(crate) fn turn(&mut self, turn: &Turn<f64, N>) {
-        self.gramian += turn.of_gramian(&self.gramian);
-        if self.gramian.amax() > LARGE {
-            self.gramian /= LARGE;
+        self.value += turn.of_gramian(&self.value);
+        if self.value.amax() > LARGE {
+            self.value /= LARGE;
             self.is_measure = false;
         }
     }
 
     /// Starts again without data.
     pub(crate) fn reset(&mut self) {
-        self.gramian.fill(0.0);
+        self.value.fill(0.0);
     }
 
     /// The information on each component.
     pub(crate) fn component_information(&self) -> ComponentInformation {
-        let data: Vec<f64> = (0..self.unknowns).map(|i| self.gramian[(i, i)]).collect();
+        let data: Vec<f64> = (0..self.unknowns).map(|i| self.value[(i, i)]).collect();
         let shares = (0..self.unknowns).map(|i| if data[i] > 0.0 { self.share(i, &data) } else { 0.0 }).collect();
         // Without forgetting nothing is lost.
         ComponentInformation { data: if self.is_measure { data } else { Vec::new() }, shares }
@@ -107,7 +107,7 @@ impl<const N: usize> Gramian<N> {
         let mut rest = SMatrix::<f64, N, N>::zeros();
         for i in (0..self.unknowns).filter(|i| data[*i] > 0.0) {
             for j in (0..self.unknowns).filter(|j| data[*j] > 0.0) {
-                rest[(i, j)] = self.gramian[(i, j)] / (data[i] * data[j]).sqrt();
+                rest[(i, j)] = self.value[(i, j)] / (data[i] * data[j]).sqrt();
             }
         }
         let mut open: Vec<usize> = (0..self.unknowns).filter(|i| *i != component).collect();

@@ -2,7 +2,7 @@
 
 /// The cause of a loss of digits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "answer", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Cause {
     /// The emitted form's.

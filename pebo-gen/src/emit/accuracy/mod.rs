@@ -41,7 +41,7 @@ const MOST_VALUES: usize = 100_000;
 
 /// The accuracy of all functions.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[cfg_attr(feature = "answer", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Accuracy {
     /// The number of points of the measurement.
@@ -52,7 +52,7 @@ pub struct Accuracy {
 
 /// The loss of one function.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[cfg_attr(feature = "answer", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Loss {
     /// The function of the runtime's `Model`.
@@ -65,7 +65,7 @@ pub struct Loss {
 
 /// The largest error that was found.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
+#[cfg_attr(feature = "answer", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Worst {
     /// The error, in units of the effect of rounding the arguments; infinite if the value was not finite, which is null

@@ -144,60 +144,53 @@ fn applied_method(
     let expected = |count: usize| {
         if arguments.len() == count { Ok(()) } else { Err(wrong_count(name, count, arguments.len(), at)) }
     };
+    let binary = |operator, a, b| SizedFormula::binary(operator, a, b, at);
+    let logarithm =
+        |a, base| binary(Operator::Divide, applied(Function::Log, a, at)?, applied(Function::Log, base, at)?);
     let number = match name {
         "powi" => {
             expected(1)?;
             let exponent = exponent(reader, arguments[0])?;
-            SizedFormula::binary(Operator::Power, receiver, exponent, at)?
+            binary(Operator::Power, receiver, exponent)?
         }
         "powf" => {
             expected(1)?;
             let exponent = reader.number(arguments[0], locals)?;
-            SizedFormula::binary(Operator::Power, receiver, exponent, at)?
+            binary(Operator::Power, receiver, exponent)?
         }
         "recip" => {
             expected(0)?;
-            SizedFormula::binary(Operator::Divide, decimal("1", at)?, receiver, at)?
+            binary(Operator::Divide, decimal("1", at)?, receiver)?
         }
         "mul_add" => {
             expected(2)?;
             let (factor, term) = (reader.number(arguments[0], locals)?, reader.number(arguments[1], locals)?);
-            SizedFormula::binary(
-                Operator::Add,
-                SizedFormula::binary(Operator::Multiply, receiver, factor, at)?,
-                term,
-                at,
-            )?
+            binary(Operator::Add, binary(Operator::Multiply, receiver, factor)?, term)?
         }
         "hypot" => {
             expected(1)?;
             let other = reader.number(arguments[0], locals)?;
-            let square = |a: SizedFormula| SizedFormula::binary(Operator::Power, a, decimal("2", at)?, at);
-            applied(Function::Sqrt, SizedFormula::binary(Operator::Add, square(receiver)?, square(other)?, at)?, at)?
+            let square = |a: SizedFormula| binary(Operator::Power, a, decimal("2", at)?);
+            applied(Function::Sqrt, binary(Operator::Add, square(receiver)?, square(other)?)?, at)?
         }
         "exp2" => {
             expected(0)?;
-            SizedFormula::binary(Operator::Power, decimal("2", at)?, receiver, at)?
+            binary(Operator::Power, decimal("2", at)?, receiver)?
         }
         "log10" | "log2" => {
             expected(0)?;
             let base = decimal(name.trim_start_matches("log"), at)?;
-            SizedFormula::binary(
-                Operator::Divide,
-                applied(Function::Log, receiver, at)?,
-                applied(Function::Log, base, at)?,
-                at,
-            )?
+            logarithm(receiver, base)?
         }
         "to_radians" => {
             expected(0)?;
-            let degree = SizedFormula::binary(Operator::Divide, pi(at), decimal("180", at)?, at)?;
-            SizedFormula::binary(Operator::Multiply, receiver, degree, at)?
+            let degree = binary(Operator::Divide, pi(at), decimal("180", at)?)?;
+            binary(Operator::Multiply, receiver, degree)?
         }
         "to_degrees" => {
             expected(0)?;
-            let radian = SizedFormula::binary(Operator::Divide, decimal("180", at)?, pi(at), at)?;
-            SizedFormula::binary(Operator::Multiply, receiver, radian, at)?
+            let radian = binary(Operator::Divide, decimal("180", at)?, pi(at))?;
+            binary(Operator::Multiply, receiver, radian)?
         }
         // Not differentiable where Rust's 1 at zero differs from the 0 of formulas.
         "signum" => {
@@ -223,12 +216,7 @@ fn applied_method(
         "log" => {
             expected(1)?;
             let base = reader.number(arguments[0], locals)?;
-            SizedFormula::binary(
-                Operator::Divide,
-                applied(Function::Log, receiver, at)?,
-                applied(Function::Log, base, at)?,
-                at,
-            )?
+            logarithm(receiver, base)?
         }
         _ => {
             if let Some((_, help)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
