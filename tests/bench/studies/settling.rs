@@ -8,7 +8,7 @@
 //! takes, which no estimator can help; it is in the error at 10 ms.
 
 mod converter;
-#[path = "../../pebo-runtime/tests/runtime/noise.rs"]
+#[path = "../../../pebo-runtime/tests/runtime/noise.rs"]
 mod noise;
 
 use converter::{C2, C4, Converter, E, G, L1, L3};
