@@ -51,7 +51,8 @@ impl Domain {
         let mut open = vec![Cell { domain: self.clone(), sides: Vec::new() }];
         while let Some(cell) = open.pop() {
             // Of `sqrt((|q| - 1)^2)` each side of q = 0 has a border of its own.
-            let mut dividers = cell.domain.dividers(arena, exprs)?.into_iter().filter(|divider| varies(*divider));
+            let there = cell.domain.analytic(arena, exprs);
+            let mut dividers = cell.domain.dividers(arena, &there)?.into_iter().filter(|divider| varies(*divider));
             let finer = dividers.find_map(|divider| match cell.divide(arena, divider) {
                 Ok(finer) => (finer.len() > 1).then_some(Ok(finer)),
                 Err(obstacle) => Some(Err(obstacle)),
@@ -65,7 +66,7 @@ impl Domain {
             }
         }
         for cell in &cells {
-            cell.domain.check_angles(arena, exprs, &varies)?;
+            cell.domain.check_angles(arena, &cell.domain.analytic(arena, exprs), &varies)?;
         }
         Ok(cells)
     }

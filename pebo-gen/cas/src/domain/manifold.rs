@@ -79,6 +79,11 @@ impl Manifold {
         Self { equations, groups, exact }
     }
 
+    /// The manifold with values of symbols.
+    pub(crate) fn substituted(&self, arena: &Arena, facts: &Facts, values: &Point) -> Self {
+        Self::new(arena, facts, arena.substitute_all(&self.equations, values), self.groups.clone())
+    }
+
     /// True if there is no equation.
     pub fn is_empty(&self) -> bool {
         self.equations.is_empty()
@@ -97,6 +102,11 @@ impl Manifold {
     /// All equations that no exact step solves.
     pub(crate) fn open_equations(&self) -> &[Expr] {
         &self.exact.open
+    }
+
+    /// Expressions that vanish together where the equations hold: those of the exact steps, and the open equations.
+    pub fn reduced(&self, arena: &Arena) -> Vec<Expr> {
+        self.exact.steps.iter().map(|step| step.equation(arena)).chain(self.exact.open.iter().copied()).collect()
     }
 
     /// The exact steps.
@@ -196,7 +206,12 @@ impl Solver<'_> {
                 if !occurring.contains(&symbol) {
                     continue;
                 }
-                if let Some((step, divided)) = self.step(&field, numerator, symbol, wanted)? {
+                let step = match self.step(&field, numerator, symbol, wanted) {
+                    // Of `a + |a|`, which is zero on one side: no divisor.
+                    Err(Obstacle::DivisionByZero) => continue,
+                    step => step?,
+                };
+                if let Some((step, divided)) = step {
                     let cost = (!divided, place, numerator.term_count());
                     ways.push(Candidate { cost, equation, step });
                 }
@@ -310,6 +325,16 @@ impl Solver<'_> {
 }
 
 impl Step {
+    /// The expression that vanishes where the symbol has this value: `symbol - middle`, or
+    /// `(symbol - middle)^degree - radicand`.
+    pub(crate) fn equation(&self, arena: &Arena) -> Expr {
+        let distance = arena.sub(arena.of_symbol(self.symbol), self.middle);
+        match &self.root {
+            None => distance,
+            Some(root) => arena.sub(arena.power(distance, &i64::from(root.degree).into()), root.radicand),
+        }
+    }
+
     fn needs(&self, arena: &Arena) -> BTreeSet<Symbol> {
         let radicand = self.root.as_ref().map(|root| root.radicand);
         arena.symbols_of(&[Some(self.middle), radicand].into_iter().flatten().collect::<Vec<_>>())

@@ -3,8 +3,10 @@
 //! In: facts, and values that are given. Out: points at which every fact provably holds, simple ones
 //! first, the same ones every time.
 
+mod analytic;
 pub mod bounds;
 pub mod cells;
+mod components;
 mod extremes;
 mod implied;
 pub mod injectivity;
@@ -105,6 +107,20 @@ impl Domain {
         Self { manifold: Manifold::default(), ..self.clone() }
     }
 
+    /// The same with the given values in the facts and equations, as formulas have them after substitution.
+    #[must_use]
+    pub fn at_given_values(&self, arena: &Arena) -> Self {
+        let mut facts = Facts::new();
+        for (fact, relation) in self.facts.iter() {
+            let fact = arena.substitute(fact, &self.fixed);
+            if !arena.symbols_of(&[fact]).is_empty() {
+                facts.assume(fact, relation);
+            }
+        }
+        let manifold = self.manifold.substituted(arena, &facts, &self.fixed);
+        Self { facts, manifold, ..self.clone() }
+    }
+
     /// True if every fact and equation that concerns the point's symbols provably holds there.
     pub fn contains(&self, arena: &Arena, point: &Point) -> bool {
         let concerned = |expr: Expr| arena.symbols_of(&[expr]).iter().any(|symbol| point.contains_key(symbol));
@@ -183,7 +199,8 @@ impl Domain {
 fn holds(arena: &Arena, (expr, relation): (Expr, Relation), point: &Point) -> bool {
     match arena.separated_from_zero(expr, point) {
         Some(value) => relation == Relation::NonZero || value.is_positive(),
-        None => false,
+        // An enclosure of zero does not exclude negative values; zero itself does.
+        None => relation == Relation::NonNegative && arena.is_zero(arena.substitute(expr, point)),
     }
 }
 

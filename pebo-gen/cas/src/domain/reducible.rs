@@ -4,7 +4,6 @@
 //! linear factors and squares under roots. Holds after: if there is one, a property proved at a point of the domain
 //! need not hold at almost every other.
 
-use super::manifold::Step;
 use crate::graph::arena::Arena;
 use crate::graph::expr::Expr;
 use crate::poly::Poly;
@@ -16,48 +15,67 @@ use crate::{Domain, Relation};
 pub fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool) -> Option<Expr> {
     // By the inequalities alone: where the equations hold, each factor is zero or not by the branch.
     let assumed = domain.without_equations();
-    let roots = domain.manifold.steps().iter().filter_map(|step| squared(arena, step));
+    let roots = domain.manifold.steps().iter().filter(|step| step.root.is_some()).map(|step| step.equation(arena));
     let equations = roots.chain(domain.manifold.open_equations().iter().copied());
     equations.filter(|equation| concerns(*equation)).find(|equation| {
         // A failed computation does not prove irreducibility.
-        holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)
+        factors(arena, &assumed, *equation).map_or(true, |factors| factors.are_several())
     })
 }
 
-/// The zero expression of a root: `(symbol - middle)^degree - radicand`.
-fn squared(arena: &Arena, step: &Step) -> Option<Expr> {
-    let root = step.root.as_ref()?;
-    let distance = arena.sub(arena.of_symbol(step.symbol), step.middle);
-    Some(arena.sub(arena.power(distance, &i64::from(root.degree).into()), root.radicand))
+/// The ways in which an equation may hold.
+pub(super) enum Factors {
+    /// It is no product, as far as rules find.
+    One,
+    /// It holds where one of these vanishes; a single one is shorter than the equation.
+    Several(Vec<Expr>),
+    /// It is a polynomial in one symbol, with perhaps several roots.
+    Roots,
 }
 
-fn holds_in_several_ways(arena: &Arena, domain: &Domain, equation: Expr) -> Result<bool, Obstacle> {
+impl Factors {
+    fn are_several(&self) -> bool {
+        match self {
+            Self::One => false,
+            Self::Several(factors) => factors.len() > 1,
+            Self::Roots => true,
+        }
+    }
+}
+
+/// The factors of an equation that may vanish by the inequalities of the domain.
+pub(super) fn factors(arena: &Arena, domain: &Domain, equation: Expr) -> Result<Factors, Obstacle> {
     let field = Field::over(arena, &domain.facts, &[equation])?;
-    let may_vanish = |factor: &Poly| -> Result<bool, Obstacle> {
-        let factor = field.show(&field.of_polynomial(factor)?);
-        Ok(!domain.implies(arena, factor, Relation::NonZero))
-    };
-    let mut ways = 0;
-    for (factor, _) in field.fraction(equation)?.numerator().factored(field.limit())?.factors {
-        if !may_vanish(&factor)? {
+    let may_vanish = |factor: &Expr| !domain.implies(arena, *factor, Relation::NonZero);
+    let fraction = field.fraction(equation)?;
+    if fraction.is_zero() {
+        return Ok(Factors::One);
+    }
+    let parts = fraction.numerator().factored(field.limit())?;
+    // A number that is not zero has no factors: the equation holds nowhere.
+    let is_product = parts.factors.len() != 1 || parts.factors.iter().any(|(_, exponent)| *exponent > 1);
+    let (mut found, mut is_divided, mut has_roots) = (Vec::new(), is_product, false);
+    for (factor, _) in parts.factors {
+        let whole = field.show(&field.of_polynomial(&factor)?);
+        if !may_vanish(&whole) {
+            is_divided = true;
             continue;
         }
-        // A polynomial in one symbol may have as many roots as its degree; two of them are examined below.
-        let mut ways_of_factor = match factor.variables() {
-            [variable] if factor.degree(*variable) > 2 => 2,
-            _ => 1,
-        };
-        for &variable in factor.variables() {
-            if let Some([above, below]) = two_roots(&field, &factor, variable)? {
-                // Each of the two, if the domain does not exclude it.
-                let open = |root: &Expr| !domain.implies(arena, *root, Relation::NonZero);
-                ways_of_factor = [above, below].iter().filter(|root| open(root)).count().max(1);
-                break;
-            }
+        let roots = factor.variables().iter().find_map(|variable| two_roots(&field, &factor, *variable).transpose());
+        if let Some(roots) = roots.transpose()? {
+            is_divided = true;
+            found.extend(roots.into_iter().filter(may_vanish));
+        } else {
+            // It may have as many roots as its degree.
+            has_roots |= matches!(factor.variables(), [variable] if factor.degree(*variable) > 2);
+            found.push(whole);
         }
-        ways += ways_of_factor;
     }
-    Ok(ways > 1)
+    Ok(match (has_roots, is_divided) {
+        (true, _) => Factors::Roots,
+        (false, true) => Factors::Several(found),
+        (false, false) => Factors::One,
+    })
 }
 
 /// The two linear factors of a polynomial that is quadratic in a variable, as expressions: they exist if the

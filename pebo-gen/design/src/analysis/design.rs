@@ -237,7 +237,7 @@ pub struct Trajectories {
     /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
     /// None if undecided.
     pub by_itself: Option<bool>,
-    /// True if nothing has to move: the rank is full even with constant outputs.
+    /// True if nothing has to move: there are equilibria, and the rank is full at almost all of them.
     pub at_rest: bool,
     /// Trajectories on which the rank is not full.
     pub blind: Vec<BlindTrajectory>,
@@ -268,8 +268,8 @@ impl BlindTrajectory {
 /// A condition that holds at all times.
 #[derive(Clone, Debug)]
 pub enum TrajectoryCondition {
-    /// All inputs and outputs are constant.
-    Equilibrium,
+    /// The plant is at an equilibrium at which these vanish: at any, if there are none.
+    Equilibrium(Vec<Expr>),
     /// These inputs are constant.
     Constant(Vec<Symbol>),
     /// The input has this value.

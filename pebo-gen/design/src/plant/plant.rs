@@ -258,15 +258,20 @@ impl Plant {
         domain
     }
 
+    /// The groups of symbols that equations are solved for, in this order: unmeasured ones, which results must not
+    /// hold, outputs, inputs, and parameters.
+    pub(crate) fn elimination_order(&self) -> Vec<BTreeSet<Symbol>> {
+        let outputs = self.y.iter().map(|output| output.symbol);
+        let constants = self.parameters.iter().map(|parameter| parameter.symbol);
+        vec![self.hidden(), outputs.collect(), self.u.iter().copied().collect(), constants.collect()]
+    }
+
     /// The assumptions on values: the author's inequalities and identities, and the values of the parameters.
     pub fn assumed(&self) -> Domain {
         let mut domain = assumed(&self.arena, &self.assumptions, &self.parameters);
         if !self.identities.is_empty() {
-            let outputs = self.y.iter().map(|output| output.symbol);
-            let constants = self.parameters.iter().map(|parameter| parameter.symbol);
-            let groups = vec![self.hidden(), outputs.collect(), self.u.iter().copied().collect(), constants.collect()];
             let equations = self.identities.iter().map(|identity| identity.expr).collect();
-            domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, groups);
+            domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, self.elimination_order());
         }
         domain
     }

@@ -95,7 +95,7 @@ pub(super) fn decide(
 }
 
 /// Tests whether an expression depends on more than the parameters.
-fn varies(plant: &Plant, expr: Expr) -> bool {
+pub(super) fn varies(plant: &Plant, expr: Expr) -> bool {
     let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
     plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
 }
@@ -191,7 +191,7 @@ fn on_parts(
     let mut cells = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
-    let (mut by_itself, mut at_rest) = (Some(true), true);
+    let mut by_itself = Some(true);
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for part in &parts {
         let mut reported = Vec::new();
@@ -206,7 +206,6 @@ fn on_parts(
                 let trajectories = decided.claim.result.as_ref().and_then(|result| result.trajectories.as_ref());
                 let also = trajectories.and_then(|trajectories| trajectories.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
-                at_rest &= trajectories.is_some_and(|trajectories| trajectories.at_rest);
                 within.extend(trajectories.map(|trajectories| (part, trajectories.blind.clone())));
             }
             Some(Excitation::Never) => blind.push(BlindTrajectory {
@@ -245,7 +244,6 @@ fn on_parts(
     }
     // Several cells identify the unknowns while the plant moves from one to the other.
     let by_itself = by_itself.filter(|_| blind.len() < parts.len());
-    let at_rest = at_rest && by_itself == Some(true);
     blind.extend(of_parts(plant, &within, parts.len()));
     // On the borders too a column may vanish.
     let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
@@ -254,7 +252,7 @@ fn on_parts(
     let others: Vec<BlindTrajectory> =
         on_whole.into_iter().flatten().filter(|of| is_undecided(of) && is_new(of)).collect();
     blind.extend(others);
-    let trajectories = Trajectories { by_itself, at_rest, blind, everywhere: false, parameters };
+    let trajectories = Trajectories { by_itself, at_rest: false, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {

@@ -12,11 +12,18 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
 /// The factors of the unknowns: `Phi_1`, less the rate of their factors under the derivative.
-pub(super) fn effective(arena: &Arena, flow: &Flow, phi_1: &[Vec<Expr>], primitive_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
-    let mut rows = phi_1.to_vec();
-    for (row, primitive) in rows.iter_mut().zip(primitive_1) {
+pub(super) fn effective(
+    arena: &Arena,
+    domain: &Domain,
+    flow: &Flow,
+    phi_1: &[Vec<Expr>],
+    primitive_1: &[Vec<Expr>],
+) -> Vec<Vec<Expr>> {
+    let on_domain = |row: &Vec<Expr>| domain.analytic(arena, row);
+    let mut rows: Vec<Vec<Expr>> = phi_1.iter().map(on_domain).collect();
+    for (row, primitive) in rows.iter_mut().zip(primitive_1.iter().map(on_domain)) {
         for (entry, factor) in row.iter_mut().zip(primitive) {
-            *entry = arena.sub(*entry, flow.rate(arena, *factor));
+            *entry = arena.sub(*entry, flow.rate(arena, factor));
         }
     }
     rows
@@ -62,7 +69,7 @@ impl Flow {
         let free = plant.commanded().chain(plant.w.iter().copied()).chain(unruled);
         let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
         for rate in rates.values_mut() {
-            *rate = arena.substitute(*rate, equal);
+            *rate = domain.analytic(arena, &[arena.substitute(*rate, equal)])[0];
         }
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free };

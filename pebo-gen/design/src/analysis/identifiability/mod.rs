@@ -38,7 +38,12 @@ pub(super) fn prove(
     left_inverse: Option<&LeftInverse>,
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Identifiability> {
-    let regressor: Vec<Expr> = regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect();
+    // In an implicit regression the rates of outputs are among the factors of the unknowns.
+    let effective = match Flow::new(plant, domain, cascade) {
+        Ok(flow) => effective(&plant.arena, domain, &flow, &regression.phi_1, &regression.primitive_1),
+        Err(_) => regression.phi_1.clone(),
+    };
+    let regressor: Vec<Expr> = effective.iter().chain(&regression.primitive_1).flatten().copied().collect();
     let identities: Vec<Expr> = plant.identities.iter().map(|identity| identity.expr).collect();
     let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
     let hidden = plant.hidden();
@@ -51,8 +56,12 @@ pub(super) fn prove(
     let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
         where_analytic(plant, domain, cascade, regression, left_inverse, found)
     };
-    divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
-        .unwrap_or_else(|obstacle| open(plant, &obstacle, found))
+    let mut claim = divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
+        .unwrap_or_else(|obstacle| open(plant, &obstacle, found));
+    if let Some(trajectories) = claim.result.as_mut().and_then(|result| result.trajectories.as_mut()) {
+        trajectory::rest::add(trajectories, plant, domain, cascade, regression);
+    }
+    claim
 }
 
 /// The rates in the regressor's derivatives; all of them if these hold inputs, which the rates may restrict.
@@ -115,7 +124,7 @@ fn where_analytic(
     let by_rates = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
     let flow = Flow::new(plant, domain, cascade);
     let mut stack = match &flow {
-        Ok(flow) => effective(arena, flow, &regression.phi_1, &regression.primitive_1),
+        Ok(flow) => effective(arena, domain, flow, &regression.phi_1, &regression.primitive_1),
         Err(_) if !by_rates => regression.phi_1.clone(),
         Err(obstacle) => return open(plant, obstacle, found).into(),
     };
@@ -310,7 +319,7 @@ fn hidden_from(
     columns: usize,
 ) -> Result<HiddenDirections, Obstacle> {
     let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
-    let special = null_vectors(arena, domain, &valued, columns)?;
+    let special = null_vectors(arena, &domain.at_given_values(arena), &valued, columns)?;
     let general = null_vectors(arena, domain, rows, columns)?;
     let special_values = special.len() > general.len();
     Ok(HiddenDirections { directions: if special_values { special } else { general }, special_values })

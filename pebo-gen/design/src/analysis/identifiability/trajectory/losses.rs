@@ -9,7 +9,7 @@ use crate::analysis::identifiability::flow::{Flow, without_psi};
 use crate::analysis::identifiability::singular::Volume;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
-use pebo_cas::{Arena, Expr, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
 
@@ -202,10 +202,9 @@ impl TrajectoryProblem<'_> {
         divides().unwrap_or(false)
     }
 
-    /// Zeros at which rows that have full rank at rest lose it, each of which is invariant there; and true if there are
-    /// no others.
-    pub(super) fn doubtful_at_rest(&self, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
-        let &Self { plant, domain, .. } = self;
+    /// Zeros at which rows that have full rank on a family of equilibria lose it; and true if there are no others.
+    pub(super) fn doubtful_at_rest(&self, domain: &Domain, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
+        let plant = self.plant;
         let arena = &plant.arena;
         if self.is_constant(stack) {
             return (Vec::new(), true);
@@ -215,14 +214,7 @@ impl TrajectoryProblem<'_> {
         }
         let volume = Volume::of(arena, domain, stack);
         let Ok(zero_set) = volume.and_then(|volume| volume.zero_set(plant, domain)) else { return (Vec::new(), false) };
-        let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-        let commanded: BTreeSet<Symbol> = plant.commanded().collect();
-        // Functions of inputs alone are tested on all trajectories.
-        let of_outputs = |zero: &Expr| {
-            let symbols = arena.symbols_of(&[*zero]);
-            symbols.difference(&constants).any(|signal| !commanded.contains(signal))
-        };
-        (zero_set.zeros.into_iter().filter(of_outputs).collect(), zero_set.all)
+        (zero_set.zeros, zero_set.all)
     }
 
     /// Values of inputs at which an entry vanishes.

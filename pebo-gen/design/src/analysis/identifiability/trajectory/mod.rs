@@ -2,7 +2,7 @@
 //! they are hidden.
 //!
 //! In: a regression whose rows are of full rank over time on almost every trajectory. Out: the same with all inputs
-//! constant, and at rest; and simple trajectories on which they are not: inputs that are constant, that are equal, or
+//! constant; and simple trajectories on which they are not: inputs that are constant, that are equal, or
 //! at a value at which an entry vanishes.
 //!
 //! The problem is the same as for all trajectories: the rank of the rows with their derivatives. A point proves full
@@ -13,6 +13,7 @@ mod problem;
 
 mod coinciding;
 mod losses;
+pub(super) mod rest;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -21,9 +22,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
 use crate::plant::Plant;
-use pebo_cas::forms::tidy::shortest;
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr, Relation, Symbol};
+use pebo_cas::{Domain, Expr, Symbol};
 
 use losses::{MOST_OF_DETERMINANT, is_listed};
 use problem::{MOST_PARTS, Observation, Restriction, TrajectoryProblem};
@@ -51,14 +51,6 @@ pub(super) fn of(
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let held = problem.solve(&Restriction { held: inputs.clone(), ..Restriction::default() });
     let by_itself = held.as_ref().ok().map(|observed| observed.hidden.is_empty()).or(inputs.is_empty().then_some(true));
-    // Where all signals are constant, so is z, and with it the input of a plain extension.
-    let outputs = plant.y.iter().map(|output| output.symbol);
-    let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
-    let still: BTreeSet<Symbol> = inputs.iter().copied().chain(outputs).chain(extension).collect();
-    let balanced = Restriction { held: still.clone(), equal: at_rest(plant, domain, cascade) };
-    let rest =
-        problem.solve(&balanced).or_else(|_| problem.solve(&Restriction { held: still, ..Restriction::default() }));
-    let at_rest = by_itself == Some(true) && rest.as_ref().is_ok_and(|observed| observed.hidden.is_empty());
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     let mut blind = Vec::new();
     let mut note = |condition: TrajectoryCondition, observed: &Result<Observation, Obstacle>| {
@@ -71,13 +63,15 @@ pub(super) fn of(
             });
         }
     };
-    match by_itself {
-        Some(true) => note(TrajectoryCondition::Equilibrium, &rest),
-        Some(false) | None => note(TrajectoryCondition::Constant(plant.commanded().collect()), &held),
+    if by_itself != Some(true) {
+        note(TrajectoryCondition::Constant(plant.commanded().collect()), &held);
     }
+    // The shortest rows of full rank are those of the fewest moving signals.
+    let at_rest = || Restriction { held: problem.signals_at_rest(), ..Restriction::default() };
+    let still = (by_itself == Some(true)).then(|| problem.solve(&at_rest()));
     let free;
     let observed =
-        if let Some(observed) = [&rest, &held].into_iter().flatten().find(|observed| observed.hidden.is_empty()) {
+        if let Some(observed) = still.iter().chain([&held]).flatten().find(|observed| observed.hidden.is_empty()) {
             Some(observed)
         } else {
             free = problem.solve(&Restriction::default());
@@ -133,15 +127,7 @@ pub(super) fn of(
         blind.extend(others);
     }
     blind.extend(kept);
-    if let Some(observed) = rest.as_ref().ok().filter(|_| at_rest) {
-        let known: Vec<Expr> = blind.iter().filter_map(|other| undecided_zero(&other.condition)).collect();
-        let (doubtful, all) = problem.doubtful_at_rest(&observed.stack);
-        let others = doubtful.into_iter().filter(|zero| !known.contains(zero));
-        let at_rest = |zero| BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero));
-        blind.extend(others.map(at_rest));
-        everywhere &= all;
-    }
-    (Trajectories { by_itself, at_rest, blind, everywhere, parameters }, constants)
+    (Trajectories { by_itself, at_rest: false, blind, everywhere, parameters }, constants)
 }
 
 impl TrajectoryProblem<'_> {
@@ -169,42 +155,4 @@ impl TrajectoryProblem<'_> {
         }
         found
     }
-}
-
-/// The expression of an undecided zero.
-fn undecided_zero(condition: &TrajectoryCondition) -> Option<Expr> {
-    match condition {
-        TrajectoryCondition::Undecided(zero) => Some(*zero),
-        _ => None,
-    }
-}
-
-/// The only values of the inputs at which the plant is at equilibrium, and the transform at them: read off the rates
-/// without an unmeasured state, which are zero there.
-fn at_rest(plant: &Plant, domain: &Domain, cascade: &Cascade) -> BTreeMap<Symbol, Expr> {
-    let arena = &plant.arena;
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let hidden = plant.hidden();
-    let moves = cascade.h.iter().filter(|_| cascade.lambda.is_none()).copied();
-    let mut equal: BTreeMap<Symbol, Expr> = BTreeMap::new();
-    for rate in moves.chain(plant.rates().into_values()) {
-        let rate = arena.substitute(rate, &equal);
-        if arena.depends_on(rate, &hidden) {
-            continue;
-        }
-        let solved = plant.commanded().find_map(|input| {
-            let slope = arena.derivative(rate, input);
-            let steep =
-                arena.symbols_of(&[slope]).is_subset(&constants) && domain.implies(arena, slope, Relation::NonZero);
-            let rest = arena.substitute(rate, &BTreeMap::from([(input, arena.zero())]));
-            steep.then(|| (input, arena.neg(arena.div(rest, slope))))
-        });
-        let Some((input, value)) = solved else { continue };
-        let value = BTreeMap::from([(input, shortest(arena, domain, value))]);
-        for other in equal.values_mut() {
-            *other = arena.substitute(*other, &value);
-        }
-        equal.extend(value);
-    }
-    equal
 }

@@ -41,21 +41,25 @@ pub(super) struct Observation {
 impl TrajectoryProblem<'_> {
     /// Solves the problem on the trajectories of a restriction.
     pub(super) fn solve(&self, restriction: &Restriction) -> Result<Observation, Obstacle> {
-        let &Self { plant, domain, cascade, regression, unknowns } = self;
+        if restriction.equal.is_empty() {
+            return self.solve_on(self.domain, restriction);
+        }
+        let domain = self.domain.restricted(&self.plant.arena, &restriction.equal).ok_or(Obstacle::NoPoint)?;
+        self.solve_on(&domain, restriction)
+    }
+
+    /// The same where the trajectories remain in a domain.
+    pub(super) fn solve_on(&self, domain: &Domain, restriction: &Restriction) -> Result<Observation, Obstacle> {
+        let &Self { plant, cascade, regression, unknowns, .. } = self;
         let arena = &plant.arena;
-        let domain = if restriction.equal.is_empty() {
-            domain.clone()
-        } else {
-            domain.restricted(arena, &restriction.equal).ok_or(Obstacle::NoPoint)?
-        };
-        let mut flow = Flow::along(plant, &domain, cascade, &restriction.held, &restriction.equal)?;
+        let mut flow = Flow::along(plant, domain, cascade, &restriction.held, &restriction.equal)?;
         let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {
             rows.iter().map(|row| arena.substitute_all(row, &restriction.equal)).collect()
         };
         let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
-        let mut latest = effective(arena, &flow, &phi_1, &primitive_1);
+        let mut latest = effective(arena, domain, &flow, &phi_1, &primitive_1);
         let mut stack = without_psi(plant, &latest);
-        let mut rank = proved_rank(arena, &domain, &stack, unknowns);
+        let mut rank = proved_rank(arena, domain, &stack, unknowns);
         let mut hidden = None;
         for _ in 1..unknowns {
             if rank == unknowns {
@@ -64,14 +68,14 @@ impl TrajectoryProblem<'_> {
             let before = stack.clone();
             latest = flow.rates(arena, &latest)?;
             stack.extend(without_psi(plant, &latest));
-            let next = proved_rank(arena, &domain, &stack, unknowns);
+            let next = proved_rank(arena, domain, &stack, unknowns);
             if next == rank {
                 if arena.postorder(&stack.concat()).len() > MOST_PARTS {
                     return Err(Obstacle::TooLarge);
                 }
                 // No derivative adds to a rank that one derivative did not raise: by exact algebra, both times.
-                let vectors = null_vectors(arena, &domain, &stack, unknowns)?;
-                if vectors.len() == null_vectors(arena, &domain, &before, unknowns)?.len() {
+                let vectors = null_vectors(arena, domain, &stack, unknowns)?;
+                if vectors.len() == null_vectors(arena, domain, &before, unknowns)?.len() {
                     hidden = Some(vectors);
                     break;
                 }
@@ -84,7 +88,7 @@ impl TrajectoryProblem<'_> {
             None if rank == unknowns => Vec::new(),
             // As many derivatives as there are unknowns have the full rank.
             None if arena.postorder(&stack.concat()).len() > MOST_PARTS => return Err(Obstacle::TooLarge),
-            None => null_vectors(arena, &domain, &stack, unknowns)?,
+            None => null_vectors(arena, domain, &stack, unknowns)?,
         };
         if hidden.is_empty() && rank < unknowns {
             return Err(Obstacle::NoWitness);

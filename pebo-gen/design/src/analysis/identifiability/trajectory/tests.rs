@@ -107,7 +107,8 @@ fn inputs_at_which_rows_with_their_derivatives_lose_rank_are_listed() {
         [but, "while `v*(v - 1) - 1 = 0`, it was not decided what is identified"]
     );
     let turned = "x: [a, b]\ny: [q, r]\nu: [v]\nf_x: {a: q*a, b: -q*b}\nf_y: {q: v, r: a + b}\nphi: [a, b]";
-    assert_eq!(of(turned), [but, "while `q = 0`, it was not decided what is identified"]);
+    let at_rest = "while the plant rests and `q = 0`, only `z1 + z2` is identified";
+    assert_eq!(of(turned), [but, at_rest, "while `q = 0`, it was not decided what is identified"]);
 }
 
 /// A heat exchanger with an unknown area: without a difference of temperatures it transfers nothing, for ever at rest.
@@ -117,8 +118,7 @@ fn losses_by_several_signals_at_rest_are_listed() {
                      f_y: {S: w - S + k*(T - S)}\nphi: [k, k*(T + S)]";
     let lines = of(exchanger);
     assert!(lines[0].ends_with("almost wherever the plant rests"), "{lines:?}");
-    assert!(lines[1].starts_with("while the plant rests and `"), "{lines:?}");
-    assert!(lines[1].ends_with("= 0`, it was not decided what is identified"), "{lines:?}");
+    assert_eq!(lines[1], "while the plant rests and `2*S - v - w = 0`, only `z2 - z1*(v + w)` is identified");
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
 
@@ -142,7 +142,10 @@ fn trajectories_kept_by_several_signals_are_listed_or_not_claimed() {
 fn outputs_at_unobservable_equilibria_are_listed() {
     let species = "x: [p, s]\ny: [q, r]\nu: [v]\nf_x: {p: -q*p, s: -s}\nf_y: {q: v - q, r: p + q*s}\nphi: [p, s]";
     let lines = of(species);
-    assert!(lines.iter().any(|line| line.contains("q - 1 = 0`, it was not decided")), "{lines:?}");
+    for (at, identified) in [("v = 0", "`z1`"), ("v - 1 = 0", "`z1 + z2`")] {
+        let expected = format!("while the plant rests and `{at}`, only {identified} is identified");
+        assert!(lines.contains(&expected), "{lines:?}");
+    }
 }
 
 /// The factors of a determinant do not show the values at which functions of signals are equal, or constant, nor those
@@ -240,4 +243,28 @@ fn losses_on_each_side_of_a_non_smooth_point_are_listed() {
     let lines = of("x: [p, s]\ny: [q]\nu: [v, r]\nf_x: {p: 0, s: 0}\nf_y: {q: p*abs(v) + s*r}\nphi: [p, s]");
     assert!(lines.contains(&"while `r = 0`, only `z1` is identified".to_owned()), "{lines:?}");
     assert!(lines.iter().any(|line| line.starts_with("while `abs(v) = 0`")), "{lines:?}");
+}
+
+/// "At rest" is said of equilibria that the plant has, and of the rank on them.
+#[test]
+fn equilibria_are_those_of_the_plant() {
+    let moves = "the unknowns are identified while the plant moves, also with constant inputs";
+    let almost = "the unknowns are identified on almost every trajectory, also with constant inputs";
+    let growth = "x: [a, k]\ny: [s]\nassume: [a > 0]\nf_x: {a: (s - 1)*a, k: 0}\nf_y: {s: k - a}\nphi: [a, k]";
+    assert_eq!(of(growth)[..2], [moves, "while the plant rests, only `z2 - z1` is identified"]);
+    // It rests on the border of two cells, in neither of them.
+    let hysteresis = "x: [s, h]\ny: [V]\nu: [I]\nf_x: {s: I, h: -abs(I)*h}\nf_y: {V: s + h}\nphi: [s, h]";
+    assert_eq!(of(hysteresis)[0], almost);
+    assert_eq!(of(hysteresis)[1], "while the plant rests, only `z1 + z2` is identified");
+    // A point that never rests.
+    let always = "x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: 1, r: a*q + b}\nphi: [a, b]";
+    assert_eq!(of(always), [moves]);
+    // Two components: a = 0, with any q, and q = 1.
+    let two = "x: [a, k]\ny: [q, r]\nu: [v]\nf_x: {a: (q - 1)*a, k: 0}\nf_y: {q: v, r: a + k}\nphi: [a, k]";
+    let lines = of(two);
+    assert!(lines[0].ends_with("even at rest, but for these trajectories"), "{lines:?}");
+    assert!(
+        lines.iter().any(|line| line.contains("q - 1 = 0") && line.ends_with("only `z1 + z2` is identified")),
+        "{lines:?}"
+    );
 }

@@ -97,7 +97,10 @@ impl TrajectoryCondition {
     fn worded(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
-            TrajectoryCondition::Equilibrium => "the plant rests".to_owned(),
+            TrajectoryCondition::Equilibrium(zeros) => {
+                let zeros = zeros.iter().map(|zero| format!(" and `{} = 0`", arena.print(*zero)));
+                format!("the plant rests{}", zeros.collect::<String>())
+            }
             TrajectoryCondition::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
                 "all inputs are constant".to_owned()
             }

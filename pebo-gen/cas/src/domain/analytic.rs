@@ -1,0 +1,80 @@
+//! Rewrites absolute values, signs, extremes and saturations by the signs of a domain.
+//!
+//! In: a domain, as a cell of one, and formulas. Out: the same functions on the domain, where each of these operations
+//! is the branch that the domain implies: on a cell with `a < 0`, `max(0, a)` is 0, and so are its derivatives. An
+//! operation of undecided sign remains.
+
+use rustc_hash::FxHashMap;
+
+use crate::graph::expr::{Expr, Node};
+use crate::graph::function::Function;
+use crate::{Arena, Domain, Relation};
+
+impl Domain {
+    /// The formulas by the branches that the domain implies.
+    pub fn analytic(&self, arena: &Arena, exprs: &[Expr]) -> Vec<Expr> {
+        let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for expr in arena.postorder(exprs) {
+            let rebuilt = arena.rebuild(expr, &known);
+            let branch = match arena.node(rebuilt) {
+                Node::Call(function, arguments) => self.branch(arena, function, &arguments),
+                _ => None,
+            };
+            known.insert(expr, branch.unwrap_or(rebuilt));
+        }
+        exprs.iter().map(|expr| known[expr]).collect()
+    }
+
+    /// The branch of a non-smooth operation, if the domain implies one.
+    fn branch(&self, arena: &Arena, function: Function, arguments: &[Expr]) -> Option<Expr> {
+        let implies = |expr: Expr, relation| self.grants(arena, (expr, relation));
+        let is_above = |a: Expr, b: Expr| implies(arena.sub(a, b), Relation::NonNegative);
+        let (zero, one) = (arena.zero(), arena.one());
+        let minus_one = arena.neg(one);
+        // Each value with the comparison that makes it the operation's.
+        match (function, arguments) {
+            (Function::Abs, &[a]) => is_above(a, zero).then_some(a).or_else(|| is_above(zero, a).then(|| arena.neg(a))),
+            (Function::Sign, &[a]) => {
+                let is_positive = |a: Expr| implies(a, Relation::Positive);
+                is_positive(a).then_some(one).or_else(|| is_positive(arena.neg(a)).then_some(minus_one))
+            }
+            (Function::Max, &[a, b]) => is_above(a, b).then_some(a).or_else(|| is_above(b, a).then_some(b)),
+            (Function::Min, &[a, b]) => is_above(a, b).then_some(b).or_else(|| is_above(b, a).then_some(a)),
+            (Function::Sat, &[a]) => {
+                let is_inside = || is_above(one, a) && is_above(a, minus_one);
+                let outside = is_above(a, one).then_some(one).or_else(|| is_above(minus_one, a).then_some(minus_one));
+                outside.or_else(|| is_inside().then_some(a))
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operations_are_their_branches_where_the_domain_has_one() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let (zero, one) = (arena.zero(), arena.one());
+        let on = |positive: Expr, expr: Expr| {
+            let mut domain = Domain::default();
+            domain.facts.assume(positive, Relation::Positive);
+            arena.print(domain.analytic(&arena, &[expr])[0])
+        };
+        let minus = |e| arena.neg(e);
+        assert_eq!(on(a, call(Function::Abs, &[a])), "a");
+        assert_eq!(on(minus(a), call(Function::Abs, &[a])), "-a");
+        assert_eq!(on(minus(a), arena.sqrt(call(Function::Max, &[zero, a]))), "0");
+        assert_eq!(on(minus(a), call(Function::Sign, &[a])), "-1");
+        assert_eq!(on(arena.sub(a, one), call(Function::Sat, &[a])), "1");
+        assert_eq!(on(arena.sub(a, b), call(Function::Min, &[a, b])), "b");
+        assert_eq!(on(b, call(Function::Abs, &[a])), "abs(a)");
+        // A function of a function.
+        let inner = arena.sub(call(Function::Abs, &[a]), a);
+        assert_eq!(on(a, call(Function::Max, &[inner, minus(a)])), "0");
+    }
+}

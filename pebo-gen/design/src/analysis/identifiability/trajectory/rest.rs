@@ -1,0 +1,270 @@
+//! Identifiability at equilibria.
+//!
+//! In: a regression whose unknowns are identifiable with all inputs constant. Out: added to its trajectories, the
+//! identifiability on each component of the equilibria, cut into the cells on which the rows are analytic. An
+//! equilibrium is a point at which every rate vanishes. "At rest" is a statement on points that were found: with no
+//! equilibrium, or none that was found, nothing is said.
+
+use std::collections::BTreeSet;
+
+use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
+use crate::analysis::identifiability::divided::varies;
+use crate::plant::Plant;
+use pebo_cas::domain::cells::Side;
+use pebo_cas::domain::zero::decide;
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr, Symbol};
+
+use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
+
+/// The share of the remaining budget for equilibria: one part in so many, as trajectories that are not at rest were
+/// examined before.
+const SHARE: u64 = 2;
+
+/// Adds to the trajectories of a regression those at equilibria.
+pub(in crate::analysis::identifiability) fn add(
+    trajectories: &mut Trajectories,
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+) {
+    if trajectories.by_itself != Some(true) {
+        return;
+    }
+    let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
+    let held = problem.signals_at_rest();
+    let families = plant.arena.budget().share(SHARE, || problem.families(&held));
+    let rest = match families {
+        Ok(families) => problem.joined(&families, &trajectories.blind, &held),
+        Err(_) => problem.at_constant_signals(&held),
+    };
+    trajectories.at_rest = rest.identified;
+    trajectories.everywhere &= rest.all || !rest.identified;
+    let of_undecided = |blind: &BlindTrajectory| match blind.condition {
+        TrajectoryCondition::Undecided(zero) | TrajectoryCondition::UndecidedAtRest(zero) => Some(zero),
+        _ => None,
+    };
+    let known: Vec<Expr> = trajectories.blind.iter().filter_map(of_undecided).collect();
+    // What holds throughout a cell holds at its equilibria.
+    let cells: Vec<_> = trajectories.blind.iter().filter_map(cell_of).cloned().collect();
+    let is_new = |blind: &BlindTrajectory| {
+        of_undecided(blind).is_none_or(|zero| !known.contains(&zero))
+            && within(blind).is_none_or(|sides| !cells.iter().any(|cell| cell.as_slice() == sides))
+    };
+    let (undecided, hidden): (Vec<_>, Vec<_>) =
+        rest.blind.into_iter().filter(is_new).partition(|blind| of_undecided(blind).is_some());
+    trajectories.blind.splice(0..0, hidden);
+    trajectories.blind.extend(undecided);
+}
+
+/// The cell of a statement on all of it.
+fn cell_of(blind: &BlindTrajectory) -> Option<&Vec<(Expr, Side)>> {
+    match &blind.condition {
+        TrajectoryCondition::Cell(sides) => Some(sides),
+        _ => None,
+    }
+}
+
+/// The cell of a statement on its equilibria.
+fn within(blind: &BlindTrajectory) -> Option<&[(Expr, Side)]> {
+    match &blind.condition {
+        TrajectoryCondition::Within(sides, _) => Some(sides),
+        _ => None,
+    }
+}
+
+/// The answer at equilibria.
+#[derive(Default)]
+struct Rest {
+    /// True if there are equilibria, and at almost all of them the unknowns are identifiable.
+    identified: bool,
+    /// True if those at which they are not are listed.
+    all: bool,
+    blind: Vec<BlindTrajectory>,
+}
+
+/// Equilibria on which the rows are analytic.
+struct Family {
+    domain: Domain,
+    condition: TrajectoryCondition,
+    observed: Observation,
+}
+
+impl TrajectoryProblem<'_> {
+    /// The signals that are constant at rest. With them the states are, and so is the input of a plain extension.
+    pub(super) fn signals_at_rest(&self) -> BTreeSet<Symbol> {
+        let &Self { plant, cascade, .. } = self;
+        let rates: Vec<Expr> = plant.rates().into_values().collect();
+        let outputs = plant.y.iter().map(|output| output.symbol);
+        let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
+        let disturbances = plant.arena.symbols_of(&rates).into_iter().filter(|symbol| plant.w.contains(symbol));
+        let constant = plant.commanded().chain(outputs).chain(extension).chain(disturbances);
+        constant.filter(|symbol| plant.time != Some(*symbol)).collect()
+    }
+
+    /// The equilibria, by components and cells.
+    fn families(&self, held: &BTreeSet<Symbol>) -> Result<Vec<Family>, Obstacle> {
+        let arena = &self.plant.arena;
+        let mut rates = self.plant.rates();
+        rates.retain(|symbol, _| self.plant.time != Some(*symbol));
+        let rates: Vec<Expr> = rates.into_values().collect();
+        if self.plant.time.is_some_and(|time| arena.symbols_of(&rates).contains(&time)) {
+            return Err(Obstacle::NoPoint);
+        }
+        self.families_of(self.domain, &rates, held)
+    }
+
+    /// The points of a domain at which the equations hold too, by components and cells.
+    fn families_of(
+        &self,
+        domain: &Domain,
+        equations: &[Expr],
+        held: &BTreeSet<Symbol>,
+    ) -> Result<Vec<Family>, Obstacle> {
+        let arena = &self.plant.arena;
+        let components = domain.components(arena, equations, &self.plant.elimination_order())?;
+        // What distinguishes a component is not what holds on all of them.
+        let reduced: Vec<Vec<Expr>> = components.iter().map(|there| there.manifold.reduced(arena)).collect();
+        let hidden = self.plant.hidden();
+        let mut families = Vec::new();
+        for (domain, own) in components.into_iter().zip(&reduced) {
+            let is_special = |equation: &Expr| !reduced.iter().all(|other| other.contains(equation));
+            // Unmeasured states follow from signals, where these are special.
+            let (of_states, of_signals): (Vec<Expr>, Vec<Expr>) =
+                own.iter().copied().filter(is_special).partition(|equation| arena.depends_on(*equation, &hidden));
+            let special = if of_signals.is_empty() { of_states } else { of_signals };
+            let condition = TrajectoryCondition::Equilibrium(special);
+            if domain.points(arena, own).next().is_none() {
+                return Err(Obstacle::NoPoint);
+            }
+            let restriction = Restriction { held: held.clone(), ..Restriction::default() };
+            let observed = self.solve_on(&domain, &restriction)?;
+            let cells = domain.cells(arena, &observed.stack.concat(), |expr| varies(self.plant, expr))?;
+            if cells.len() == 1 {
+                families.push(Family { domain, condition, observed });
+                continue;
+            }
+            for cell in cells {
+                let condition = TrajectoryCondition::Within(cell.sides, Box::new(condition.clone()));
+                let observed = self.solve_on(&cell.domain, &restriction)?;
+                families.push(Family { domain: cell.domain, condition, observed });
+            }
+        }
+        Ok(families)
+    }
+
+    /// The answer of all families. Where they differ, those in a listed trajectory are exceptions that are known.
+    fn joined(&self, families: &[Family], listed: &[BlindTrajectory], held: &BTreeSet<Symbol>) -> Rest {
+        let is_hidden = |family: &Family| !family.observed.hidden.is_empty();
+        let is_same = |family: &Family| family.observed.hidden == families[0].observed.hidden;
+        if families.iter().all(|family| is_hidden(family) && is_same(family)) {
+            let blind = families.first().map(|family| {
+                let condition = match &family.condition {
+                    TrajectoryCondition::Within(..) if families.len() == 1 => family.condition.clone(),
+                    _ => TrajectoryCondition::Equilibrium(Vec::new()),
+                };
+                self.blind(condition, &family.observed)
+            });
+            return Rest { identified: false, all: true, blind: blind.into_iter().collect() };
+        }
+        let mut rest = Rest { identified: true, all: true, blind: Vec::new() };
+        for family in families {
+            let cover = self.cover(listed, family);
+            if cover.is_some_and(|blind| !blind.hidden.is_empty()) {
+                continue;
+            }
+            if is_hidden(family) {
+                rest.identified &= cover.is_some();
+                rest.blind.push(self.blind(family.condition.clone(), &family.observed));
+                continue;
+            }
+            let (zeros, all) = self.doubtful_at_rest(&family.domain, &family.observed.stack);
+            rest.all &= all;
+            for zero in zeros {
+                self.add_zero(&mut rest, (zero, family), listed, held);
+            }
+        }
+        rest
+    }
+
+    /// Adds the equilibria of a family, on which the unknowns are identifiable, at a zero of its determinant.
+    fn add_zero(
+        &self,
+        rest: &mut Rest,
+        (zero, family): (Expr, &Family),
+        listed: &[BlindTrajectory],
+        held: &BTreeSet<Symbol>,
+    ) {
+        let Ok(families) = self.families_of(&family.domain, &[zero], held) else {
+            rest.blind.push(BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero)));
+            return;
+        };
+        for there in families.into_iter().filter(|there| self.cover(listed, there).is_none()) {
+            if there.observed.hidden.is_empty() {
+                // Zeros within this one were not worked out.
+                rest.all = false;
+                continue;
+            }
+            let blind = self.blind(there.condition.with(zero), &there.observed);
+            if !rest.blind.iter().any(|other| other.holds_at(&blind)) {
+                rest.blind.push(blind);
+            }
+        }
+    }
+
+    fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
+        let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
+        let identifiable = identifiable(&self.plant.arena, symbols, &observed.hidden);
+        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
+    }
+
+    /// A listed trajectory that holds all of a family and hides as many directions, or is undecided.
+    fn cover<'a>(&self, listed: &'a [BlindTrajectory], family: &Family) -> Option<&'a BlindTrajectory> {
+        let arena = &self.plant.arena;
+        listed.iter().find(|blind| {
+            let zero = match blind.condition {
+                TrajectoryCondition::Value(symbol, value) | TrajectoryCondition::Steady(symbol, value) => {
+                    arena.sub(arena.of_symbol(symbol), value)
+                }
+                TrajectoryCondition::Undecided(zero) => zero,
+                _ => return false,
+            };
+            let says_as_much = blind.hidden.is_empty() || blind.hidden.len() == family.observed.hidden.len();
+            says_as_much && !family.observed.hidden.is_empty() && decide(arena, zero, &family.domain).is_zero()
+        })
+    }
+
+    /// The directions that are unobservable with constant signals: at equilibria too, which could not be worked out.
+    fn at_constant_signals(&self, held: &BTreeSet<Symbol>) -> Rest {
+        let observed = self.solve(&Restriction { held: held.clone(), ..Restriction::default() });
+        let Ok(observed) = observed else { return Rest::default() };
+        let blind =
+            (!observed.hidden.is_empty()).then(|| self.blind(TrajectoryCondition::Equilibrium(Vec::new()), &observed));
+        Rest { identified: false, all: false, blind: blind.into_iter().collect() }
+    }
+}
+
+impl TrajectoryCondition {
+    /// The condition where an expression vanishes besides.
+    fn with(self, zero: Expr) -> Self {
+        match self {
+            Self::Equilibrium(zeros) if zeros.contains(&zero) => Self::Equilibrium(zeros),
+            Self::Equilibrium(zeros) => Self::Equilibrium([&[zero], zeros.as_slice()].concat()),
+            Self::Within(sides, condition) => Self::Within(sides, Box::new(condition.with(zero))),
+            other => other,
+        }
+    }
+}
+
+impl BlindTrajectory {
+    /// Tests whether it is a statement on more equilibria that says as much as another.
+    fn holds_at(&self, other: &Self) -> bool {
+        match (&self.condition, &other.condition) {
+            (TrajectoryCondition::Equilibrium(own), TrajectoryCondition::Equilibrium(zeros)) => {
+                self.hidden.len() == other.hidden.len() && own.iter().all(|zero| zeros.contains(zero))
+            }
+            _ => false,
+        }
+    }
+}
