@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 use crate::plant::{Formula, Output, Plant};
 use crate::source::{Code, Diagnostic};
 use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::linear::rank::null_vectors;
+use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::design::{Verdict, Witness};
@@ -53,22 +55,90 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
             verdict = answer;
         }
     }
+    if verdict == Verdict::Proved {
+        let (answer, refusal) = jointly_kept(plant, domain);
+        found.extend(refusal);
+        verdict = answer;
+    }
     verdict
 }
 
-/// The derivative of an identity along the plant; none where it takes the rate of a signal that has none.
-fn derivative(plant: &Plant, domain: &Domain, identity: &Formula) -> Option<Expr> {
+/// The signals without a rate on which an identity depends on its manifold: their rates follow from the identities.
+fn unruled(plant: &Plant, domain: &Domain, identity: &Formula) -> BTreeSet<Symbol> {
     let arena = &plant.arena;
     let rates = plant.rates();
-    let unruled = |symbol: &Symbol| {
+    let is_unruled = |symbol: &Symbol| {
         let constant = plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
         // A signal on which the identity does not depend on its manifold may have any rate.
         !constant
             && !rates.contains_key(symbol)
             && !decide(arena, arena.derivative(identity.expr, *symbol), domain).is_zero()
     };
-    let symbols: BTreeSet<Symbol> = arena.symbols_of(&[identity.expr]);
-    (!symbols.iter().any(unruled)).then(|| arena.directional(identity.expr, &rates))
+    arena.symbols_of(&[identity.expr]).into_iter().filter(is_unruled).collect()
+}
+
+/// The derivative of an identity along the plant; none where it takes the rate of a signal that has none.
+fn derivative(plant: &Plant, domain: &Domain, identity: &Formula) -> Option<Expr> {
+    unruled(plant, domain, identity).is_empty().then(|| plant.arena.directional(identity.expr, &plant.rates()))
+}
+
+/// Decides whether there are rates of the signals without a rate under which all identities are invariant: `a = b + p`
+/// and `b = a + s` bind the rates of a and b to one another twice, and leave p' = -s'.
+fn jointly_kept(plant: &Plant, domain: &Domain) -> (Verdict, Option<Diagnostic>) {
+    let arena = &plant.arena;
+    let bound: Vec<(&Formula, BTreeSet<Symbol>)> = plant
+        .identities
+        .iter()
+        .map(|identity| (identity, unruled(plant, domain, identity)))
+        .filter(|(_, signals)| !signals.is_empty())
+        .collect();
+    let signals: BTreeSet<Symbol> = bound.iter().flat_map(|(_, signals)| signals.iter().copied()).collect();
+    if bound.len() < 2 {
+        return (Verdict::Proved, None);
+    }
+    let slopes: Vec<Vec<Expr>> = signals
+        .iter()
+        .map(|signal| bound.iter().map(|(identity, _)| arena.derivative(identity.expr, *signal)).collect())
+        .collect();
+    let rates = plant.rates();
+    let first = bound[0].0;
+    let undecided = |obstacle: &Obstacle| {
+        Diagnostic::error(
+            Code::IdentityUndecided,
+            first.span,
+            "it could not be decided whether the identities are invariant together along the trajectories of the plant",
+        )
+        .note(format!("obstacle: {obstacle}"))
+        .help("give the rates of the signals in them under `f_y`, or solve the identities for these signals")
+    };
+    let combinations = match null_vectors(arena, domain, &slopes, bound.len()) {
+        Ok(combinations) => combinations,
+        Err(obstacle) => return (Verdict::Undecided, Some(undecided(&obstacle))),
+    };
+    for combination in combinations {
+        let known = bound.iter().map(|(identity, _)| arena.directional(identity.expr, &rates));
+        let rate = arena.sum(combination.iter().zip(known).map(|(factor, known)| arena.mul(*factor, known)));
+        match decide(arena, rate, domain) {
+            Answer::Zero => {}
+            Answer::Open(obstacle) => return (Verdict::Undecided, Some(undecided(&obstacle))),
+            Answer::NonZero(point) => {
+                let among = bound.iter().zip(&combination).filter(|(_, factor)| !arena.is_zero(**factor));
+                let mut spans = among.map(|((identity, _), _)| identity.span);
+                let refusal = Diagnostic::error(
+                    Code::IdentityRefuted,
+                    spans.next().unwrap_or(first.span),
+                    "these identities exclude one another along the trajectories of the plant",
+                )
+                .label(format!("together they ask that `{}` be zero at all times", arena.print(rate)));
+                let refusal = spans.fold(refusal, |refusal, span| refusal.also(span, "with this one"));
+                let refusal = refusal
+                    .note(Witness::of(rate, &point).sentence(arena))
+                    .help("correct one of them: two values of outputs must not define each other");
+                return (Verdict::Refuted, Some(refusal));
+            }
+        }
+    }
+    (Verdict::Proved, None)
 }
 
 /// Decides whether the identity is invariant. Where it binds a signal without a rate, it determines that rate.
@@ -148,6 +218,21 @@ mod tests {
         assert_eq!(derivation.outcome, Outcome::Rejected, "{lines}");
         let refused = derivation.diagnostics.iter().find(|found| found.code == Code::IdentityRefuted).expect(lines);
         [refused.message.to_string(), refused.help.clone().unwrap_or_default().to_string()]
+    }
+
+    #[test]
+    fn outputs_that_define_each_other_are_held_against_the_rates_of_the_states() {
+        let derived = |lines: &str| {
+            let text = format!("model: m\nx: [p, s]\ny: [a, b]\nu: [v]\nphi: [p, s]\n{lines}\n");
+            let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
+            Derivation::derive(&plant)
+        };
+        let refused = derived("f_x: {p: v, s: 0}\ng_y: {a: b + p, b: a + s}");
+        assert_eq!(refused.outcome, Outcome::Rejected);
+        assert_eq!(refused.diagnostics[0].code, Code::IdentityRefuted);
+        let message = &refused.diagnostics[0].message;
+        assert!(message.contains("exclude one another"), "{message}");
+        assert_eq!(derived("f_x: {p: v, s: 0}\ng_y: {a: b + p, b: s}").outcome, Outcome::Accepted);
     }
 
     #[test]
