@@ -3,10 +3,13 @@
 //! In: a domain and an expression. Out: yes, if a fact, algebra over the facts and the equations, or an enclosure over
 //! the box that they state proves it; an undecided sign is not proved.
 
+use rustc_hash::FxHashMap;
+
 use crate::graph::arena::Arena;
-use crate::graph::expr::Expr;
+use crate::graph::expr::{Expr, Node};
+use crate::graph::function::Function;
 use crate::tower::{Field, Fraction, Obstacle};
-use crate::{Domain, Relation};
+use crate::{Domain, Facts, Relation};
 
 /// The greatest number of non-smooth points of an expression that are examined, each from both sides.
 const MOST_BORDERS: usize = 2;
@@ -56,6 +59,31 @@ impl Domain {
             || divides()
             || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
             || (signed && borders > 0 && self.implies_on_both_sides(arena, expr, relation, borders - 1))
+            || (signed && self.implies_of_combined_angles(arena, expr, relation))
+    }
+
+    /// True if the expression compares so whatever the sums are of which it takes sines and cosines: `2 - cos(q - r)` is
+    /// positive as `2 - cos(q)` is, which the sum of products that is its normal form does not show.
+    fn implies_of_combined_angles(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        let mut angles: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for node in arena.postorder(&[expr]) {
+            if let Node::Call(Function::Sin | Function::Cos, arguments) = arena.node(node)
+                && matches!(arena.node(arguments[0]), Node::Sum(_))
+                && !arena.symbols_of(&arguments).is_empty()
+            {
+                let angle = arena.generated(&format!("angle{}", angles.len() + 1));
+                angles.entry(arguments[0]).or_insert_with(|| arena.of_symbol(angle));
+            }
+        }
+        if angles.is_empty() {
+            return false;
+        }
+        let mut free = self.without_equations();
+        free.facts = Facts::new();
+        for (fact, relation) in self.facts.iter() {
+            free.facts.assume(arena.replace(fact, &angles), relation);
+        }
+        free.implies_across(arena, arena.replace(expr, &angles), relation, 0)
     }
 
     /// True if the expression compares so on either side of a non-smooth point: there it has no absolute value of a
@@ -165,6 +193,25 @@ mod tests {
         assert!(implied(sine, square) && implied(square, sine));
         assert!(implied(arena.mul(k, sine), square));
         assert!(!implied(cosine, square) && !implied(arena.add(sine, k), square));
+    }
+
+    #[test]
+    fn sines_of_sums_have_the_bounds_of_sines() {
+        let arena = Arena::new();
+        let [q, r, b, c] = ["q", "r", "b", "c"].map(|name| arena.variable(name));
+        let cosine = |e| arena.call(Function::Cos, &[e]);
+        let of = |e| arena.sub(arena.number(Rational::from(2)), cosine(e));
+        assert!(Domain::default().implies(&arena, of(arena.sub(q, r)), Relation::Positive));
+        assert!(!Domain::default().implies(
+            &arena,
+            arena.sub(arena.one(), cosine(arena.sub(q, r))),
+            Relation::Positive
+        ));
+        let mut domain = Domain::default();
+        let square = |e| arena.mul(e, e);
+        domain.facts.assume(arena.sub(c, square(b)), Relation::Positive);
+        let leg = arena.sub(c, square(arena.mul(b, cosine(arena.sub(q, r)))));
+        assert!(domain.implies(&arena, leg, Relation::Positive));
     }
 
     #[test]
