@@ -53,14 +53,18 @@ impl Jets {
     /// At a point of the domain that is found after so many others, where all rates have rational series.
     pub(in crate::search) fn of(problem: &Problem<'_>, mut others: usize) -> Option<Self> {
         const MOST_POINTS: usize = 12;
+        // The first point has the file's own values of the parameters, which decide for the file. Small values may be
+        // exceptional, as a = 1 and b = 2 are where b - 2*a divides.
+        let other_parameters = others > 0;
         let arena = problem.arena;
         let formulas: Vec<Expr> = problem.rates.values().copied().collect();
         let (angles, zeros) = special(arena, &formulas);
         let coordinates: Vec<Symbol> = problem.x.iter().chain(&problem.y).copied().collect();
         for turned in [true, false] {
             let mut domain = problem.domain.clone();
-            // Claims are for all values of the parameters with these signs: values with few digits make short proofs.
-            domain.fixed.clear();
+            if other_parameters {
+                domain.fixed.clear();
+            }
             for symbol in zeros.iter().chain(angles.iter().filter(|_| !turned)) {
                 domain.fixed.entry(*symbol).or_insert(arena.zero());
             }

@@ -41,8 +41,10 @@ pub(in crate::search) fn decided(problem: &Problem<'_>, class: BoundClass, other
     let arena = problem.arena;
     let formulas: Vec<Expr> = problem.rates.values().copied().collect();
     let mut domain = problem.domain.clone();
-    // Claims are for all values of the parameters with these signs: values with few digits make short proofs.
-    domain.fixed.clear();
+    // The first values are the file's own, which decide for the file.
+    if others > 0 {
+        domain.fixed.clear();
+    }
     let mut point: Point = domain.points(arena, &formulas).nth(others)?;
     point.retain(|symbol, _| !problem.signals.contains(symbol));
     let rates: BTreeMap<Symbol, Expr> =
