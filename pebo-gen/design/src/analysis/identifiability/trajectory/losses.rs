@@ -261,10 +261,9 @@ impl TrajectoryProblem<'_> {
         let mut all = zero_set.all && !zero_set.joint;
         let mut lost = Vec::new();
         for formula in zero_set.constants {
-            let solved = arena
-                .symbols_of(&[formula])
-                .into_iter()
-                .find_map(|parameter| Some((parameter, solved(arena, formula, parameter)?)));
+            let parameters = arena.symbols_of(&[formula]);
+            let solved =
+                parameters.iter().find_map(|parameter| Some((*parameter, solved(arena, formula, *parameter)?)));
             let there = solved.map(|solved| Restriction { equal: BTreeMap::from([solved]), ..Restriction::default() });
             let Some(there) = there else {
                 lost.push(formula);
@@ -285,12 +284,20 @@ impl TrajectoryProblem<'_> {
     /// if they are not identifiable.
     fn further_values(&self, restriction: &Restriction) -> Result<Option<bool>, Obstacle> {
         let &Self { plant, domain, .. } = self;
-        let observed = self.solve(restriction)?;
+        // At values of the parameters that the formula allows, not at those of the file, where it need not vanish.
+        let parameters = restriction.equal.iter().flat_map(|(symbol, value)| {
+            plant.arena.symbols_of(&[*value]).into_iter().chain([*symbol]).collect::<Vec<_>>()
+        });
+        let mut free = domain.clone();
+        for parameter in parameters {
+            free.fixed.remove(&parameter);
+        }
+        let domain = free.restricted(&plant.arena, &restriction.equal).ok_or(Obstacle::NoPoint)?;
+        let observed = self.solve_on(&domain, restriction)?;
         if !observed.hidden.is_empty() {
             return Ok(None);
         }
         let zero_set = || {
-            let domain = domain.restricted(&plant.arena, &restriction.equal)?;
             Volume::of(&plant.arena, &domain, &observed.stack).and_then(|volume| volume.zero_set(plant, &domain)).ok()
         };
         Ok(Some(zero_set().is_none_or(|zero_set| !zero_set.all || zero_set.joint || !zero_set.constants.is_empty())))
