@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::growth::Growth;
+use super::remarks::ONE_OF_THEM;
 use super::{conditions, expansion, printed};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{
@@ -361,7 +362,7 @@ fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointRe
             values: point.values.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
             still: Some(point.still),
             rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
-            reason: None,
+            reason: (!point.complete).then(|| ONE_OF_THEM.to_owned()),
         },
         Equilibrium::Nowhere(symbol) => without(format!("`{}` never rests", arena.name(*symbol))),
         Equilibrium::Undecided(reason) => without(reason.clone()),

@@ -21,7 +21,7 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     }
     let remark = |name, lines| Remark { name, values: Vec::new(), lines };
     let rests = derivation.operating_point(plant).map(|equilibrium| match equilibrium {
-        Equilibrium::At(point) => (point.values.clone(), rest(derivation.class, point)),
+        Equilibrium::At(point) => (point.values.clone(), rest(plant, derivation.class, point)),
         Equilibrium::Nowhere(symbol) => {
             (Vec::new(), vec![format!("none: the rate of `{}` is never zero", plant.arena.name(*symbol))])
         }
@@ -138,9 +138,21 @@ fn long(growth: Growth) -> Option<Vec<String>> {
     ])
 }
 
+/// Said of an equilibrium beside which there may be others.
+pub(super) const ONE_OF_THEM: &str = "one of them: it was not shown that there are no other equilibria";
+
 /// Properties of the point.
-fn rest(class: Class, point: &OperatingPoint) -> Vec<String> {
+fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
     let mut lines = Vec::new();
+    let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+    let is_free = |symbol: &Symbol| point.values.iter().all(|(determined, _)| determined != symbol);
+    let free: Vec<String> = states.filter(is_free).map(|symbol| plant.arena.name(symbol)).collect();
+    if !free.is_empty() {
+        lines.push(format!("free: {}", listed(free.iter().map(String::as_str))));
+    }
+    if !point.complete {
+        lines.push(ONE_OF_THEM.to_owned());
+    }
     if point.still {
         lines.push(match class {
             Class::Pebo => "h = 0 there: chi is constant if no sensor or input has a bias".to_owned(),

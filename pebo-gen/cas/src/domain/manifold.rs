@@ -94,6 +94,13 @@ impl Manifold {
         &self.equations
     }
 
+    /// The values of the symbols that the equations determine, as functions of others; none if an equation is left, or
+    /// has several roots.
+    pub fn values(&self) -> Option<BTreeMap<Symbol, Expr>> {
+        let is_single = self.exact.open.is_empty() && self.exact.steps.iter().all(|step| step.root.is_none());
+        is_single.then(|| self.exact.steps.iter().map(|step| (step.symbol, step.middle)).collect())
+    }
+
     /// An equation that no exact step solves, so that the normal form does not use it.
     pub fn open(&self) -> Option<Expr> {
         self.exact.open.first().copied()

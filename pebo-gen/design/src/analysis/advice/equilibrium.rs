@@ -20,7 +20,10 @@ use pebo_cas::solve::elimination::Elimination;
 /// The share of the command's remaining budget for this search: one part in so many.
 const SHARE: u64 = 4;
 
-/// Operations from which on a value is printed as it was found.
+/// The share of the remaining budget for all equilibria: most is for the proof of the one that was found.
+const FOR_ALL: u64 = 64;
+
+/// Operations from which on a value is printed as it was found, and an unsolved equation is not printed.
 const MOST_TIDIED: usize = 40;
 
 /// The equilibrium of a plant.
@@ -39,6 +42,8 @@ pub enum Equilibrium {
 pub struct OperatingPoint {
     /// Determined symbols as functions of the free ones.
     pub values: Vec<(Symbol, Expr)>,
+    /// True if there are no other equilibria: they are these, at all values of the free symbols.
+    pub complete: bool,
     /// True if z' vanishes there too: `h`, of the generalised cascade `Lambda z + h`.
     pub still: bool,
     /// The rank of `[f; h_i]` at almost every point, the same for all i; none if undecided. At the operating point it
@@ -91,6 +96,21 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     // If an equilibrium of the unmeasured states is too hard to find, zero is tried, as for momenta.
     let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
     let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut equilibrium));
+    let family = arena.budget().share(FOR_ALL, || unique_family(plant, domain, &equations));
+    let is_all = |values: &BTreeMap<Symbol, Expr>| {
+        let holds = |family: &Domain, (symbol, value): (&Symbol, &Expr)| {
+            decide(arena, arena.sub(arena.of_symbol(*symbol), *value), family).is_zero()
+        };
+        family.as_ref().is_some_and(|(family, _)| values.iter().all(|value| holds(family, value)))
+    };
+    // All equilibria rather than one of them.
+    let (searched, complete) = match searched {
+        Ok(Ok(found)) if is_all(&found.0) => (Ok(Ok(found)), true),
+        other => match family.as_ref().and_then(|(_, values)| equilibrium(values)) {
+            Some(all) => (Ok(Ok(all)), true),
+            None => (other, false),
+        },
+    };
     // At an equilibrium nothing moves: a state that always moves is looked for only if no such point was found.
     if !matches!(searched, Ok(Ok(_)))
         && let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero))
@@ -101,11 +121,12 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         Ok(found) => found,
         Err(stuck) => {
             let contradiction = arena.symbols_of(&[stuck]).is_empty();
-            let reason = doubtful.unwrap_or_else(|| {
-                if contradiction {
-                    return "every way of solving for it that was tried ends in a contradiction".to_owned();
+            let reason = doubtful.unwrap_or_else(|| match contradiction {
+                true => "every way of solving for it that was tried ends in a contradiction".to_owned(),
+                false if operations(arena, stuck) > MOST_TIDIED => {
+                    "no rule solves the equations that are left".to_owned()
                 }
-                format!("no rule solves `{}` = 0", arena.print(stuck))
+                false => format!("no rule solves `{}` = 0", arena.print(stuck)),
             });
             return Ok(Equilibrium::Undecided(reason));
         }
@@ -120,7 +141,16 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         _ => orientation.of(shortest_oriented(arena, &orientation, value)),
     };
     let values = order.filter_map(|s| Some((s, printed(*values.get(&s)?)))).collect();
-    Ok(Equilibrium::At(OperatingPoint { values, still, rank: rank(arena, domain, rates.values()) }))
+    Ok(Equilibrium::At(OperatingPoint { values, complete, still, rank: rank(arena, domain, rates.values()) }))
+}
+
+/// All equilibria, with their values, if they have one component that is solved without a choice among roots.
+fn unique_family(plant: &Plant, domain: &Domain, equations: &[Expr]) -> Option<(Domain, BTreeMap<Symbol, Expr>)> {
+    // Values may hold unmeasured states: no group is kept out of them.
+    let order = [vec![BTreeSet::new()], plant.elimination_order()].concat();
+    let [family] = <[Domain; 1]>::try_from(domain.components(&plant.arena, equations, &order).ok()?).ok()?;
+    let values = family.manifold.values()?;
+    Some((family, values))
 }
 
 /// The rates of all signals but time.
@@ -239,6 +269,23 @@ mod tests {
         assert_eq!(at(lorenz), "b1 = 0, b2 = 0, a = 0");
         let away = "x: [x]\ny: [y]\nassume: [y > 1]\nf_x: {x: (y - 3)^2*y}\nf_y: {y: x}\nphi: [x]";
         assert_eq!(at(away), "x = 0, y = 3");
+    }
+
+    #[test]
+    fn all_equilibria_are_told_from_one_of_them() {
+        let is_complete = |lines: &str| match of(lines).1 {
+            Some(Equilibrium::At(point)) => point.complete,
+            other => panic!("{lines}: {other:?}"),
+        };
+        let range = "x: [px, py]\ny: [r]\nu: [vx, vy]\nassume: [r > 0]\nf_x: {px: vx, py: vy}\n\
+                     g_y: {r: sqrt(px^2 + py^2)}\nphi: [px, py]";
+        assert_eq!(at(range), "r = sqrt(px^2 + py^2), vx = 0, vy = 0");
+        assert!(is_complete(range) && is_complete(&format!("{BOOST}\nassume: [0 < d < 1]")));
+        let lorenz = "x: [b1, b2]\ny: [a]\nf_x: {b1: 28*a - b1 - a*b2, b2: a*b1 - 8*b2/3}\nf_y: {a: 10*(b1 - a)}\n\
+                      phi: [b1, b2]";
+        assert!(!is_complete(lorenz));
+        let half = "x: [p]\ny: [q]\nu: [v]\nf_x: {p: v - q^2}\nf_y: {q: p}\nphi: [p]";
+        assert_eq!((at(half).as_str(), is_complete(half)), ("p = 0, v = q^2", true));
     }
 
     #[test]
