@@ -123,18 +123,22 @@ impl TrajectoryProblem<'_> {
         held: &BTreeSet<Symbol>,
     ) -> Result<Vec<Family>, Obstacle> {
         let arena = &self.plant.arena;
-        let components = domain.components(arena, equations, &self.plant.elimination_order())?;
+        let (whole, order) = (domain, self.plant.elimination_order());
+        let components = domain.components(arena, equations, &order)?;
         // What distinguishes a component is not what holds on all of them.
         let reduced: Vec<Vec<Expr>> = components.iter().map(|there| there.manifold.reduced(arena)).collect();
         let hidden = self.plant.hidden();
         let mut families = Vec::new();
         for (domain, own) in components.into_iter().zip(&reduced) {
             let is_special = |equation: &Expr| !reduced.iter().all(|other| other.contains(equation));
-            // Unmeasured states follow from signals, where these are special.
-            let (of_states, of_signals): (Vec<Expr>, Vec<Expr>) =
-                own.iter().copied().filter(is_special).partition(|equation| arena.depends_on(*equation, &hidden));
-            let special = if of_signals.is_empty() { of_states } else { of_signals };
-            let condition = TrajectoryCondition::Equilibrium(special);
+            let special: Vec<Expr> = own.iter().copied().filter(is_special).collect();
+            let of_signals: Vec<Expr> =
+                special.iter().copied().filter(|equation| !arena.depends_on(*equation, &hidden)).collect();
+            // Where these leave one component, the unmeasured states follow from them.
+            let determined = [equations, &of_signals].concat();
+            let is_enough = !of_signals.is_empty()
+                && whole.components(arena, &determined, &order).is_ok_and(|components| components.len() == 1);
+            let condition = TrajectoryCondition::Equilibrium(if is_enough { of_signals } else { special });
             if domain.points(arena, own).next().is_none() {
                 return Err(Obstacle::NoPoint);
             }
@@ -200,13 +204,15 @@ impl TrajectoryProblem<'_> {
             rest.blind.push(BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero)));
             return;
         };
+        let at_zero = TrajectoryCondition::Equilibrium(vec![zero]);
         for there in families.into_iter().filter(|there| self.cover(listed, there).is_none()) {
             if there.observed.hidden.is_empty() {
                 // Zeros within this one were not worked out.
                 rest.all = false;
                 continue;
             }
-            let blind = self.blind(there.condition.with(zero), &there.observed);
+            let condition = family.condition.clone().and(&there.condition).and(&at_zero);
+            let blind = self.blind(condition, &there.observed);
             if !rest.blind.iter().any(|other| other.holds_at(&blind)) {
                 rest.blind.push(blind);
             }
@@ -246,13 +252,22 @@ impl TrajectoryProblem<'_> {
 }
 
 impl TrajectoryCondition {
-    /// The condition where an expression vanishes besides.
-    fn with(self, zero: Expr) -> Self {
-        match self {
-            Self::Equilibrium(zeros) if zeros.contains(&zero) => Self::Equilibrium(zeros),
-            Self::Equilibrium(zeros) => Self::Equilibrium([&[zero], zeros.as_slice()].concat()),
-            Self::Within(sides, condition) => Self::Within(sides, Box::new(condition.with(zero))),
-            other => other,
+    /// The equilibria at which both hold.
+    fn and(self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Equilibrium(mut zeros), Self::Equilibrium(others)) => {
+                let new: Vec<Expr> = others.iter().copied().filter(|zero| !zeros.contains(zero)).collect();
+                zeros.extend(new);
+                Self::Equilibrium(zeros)
+            }
+            (Self::Within(mut sides, condition), Self::Within(others, other)) => {
+                let new: Vec<_> = others.iter().filter(|side| !sides.contains(side)).copied().collect();
+                sides.extend(new);
+                Self::Within(sides, Box::new(condition.and(other)))
+            }
+            (Self::Within(sides, condition), other) => Self::Within(sides, Box::new(condition.and(other))),
+            (condition, Self::Within(sides, other)) => Self::Within(sides.clone(), Box::new(condition.and(other))),
+            (condition, _) => condition,
         }
     }
 }

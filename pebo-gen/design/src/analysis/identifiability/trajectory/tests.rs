@@ -28,6 +28,7 @@ fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
         "while `d = e`, only `z1 + z2` is identified",
         "while `d = 0`, only `z2` is identified",
         "while `e = 0`, only `z1` is identified",
+        "these were found: there may be other trajectories of this kind",
     ];
     assert_eq!(of(&anywhere), expected);
     // Their variation identifies unknowns that they hide as constants.
@@ -45,7 +46,7 @@ fn inputs_that_are_equal_or_constant_may_hide_unknowns() {
     }
     assert!(cells("f_y: {q: p/w + s}").iter().any(|line| line.contains("is constant and `v = w`")));
     // Assumptions exclude the rest.
-    assert_eq!(of(&format!("{phases}, d > 0, e > d]")), expected[..2]);
+    assert_eq!(of(&format!("{phases}, d > 0, e > d]"))[..2], expected[..2]);
 }
 
 #[test]
@@ -119,7 +120,7 @@ fn losses_by_several_signals_at_rest_are_listed() {
     let lines = of(exchanger);
     assert!(lines[0].ends_with("almost wherever the plant rests"), "{lines:?}");
     assert_eq!(lines[1], "while the plant rests and `2*S - v - w = 0`, only `z2 - z1*(v + w)` is identified");
-    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert_eq!(lines.len(), 3, "{lines:?}");
 }
 
 /// No trajectory is passed over in silence: a statement on all trajectories provably holds on all.

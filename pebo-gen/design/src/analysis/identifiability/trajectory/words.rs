@@ -45,7 +45,9 @@ impl Trajectories {
         let blind = self.blind.iter().map(|blind| blind.line(plant));
         let parameters = (!self.parameters && !plant.parameters.is_empty())
             .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
-        std::iter::once(first.to_owned()).chain(blind).chain(parameters).collect()
+        let others = (!self.everywhere && !self.blind.is_empty())
+            .then(|| "these were found: there may be other trajectories of this kind".to_owned());
+        std::iter::once(first.to_owned()).chain(blind).chain(others).chain(parameters).collect()
     }
 
     /// The first line where there are cells of the domain in which not all unknowns are identifiable.
