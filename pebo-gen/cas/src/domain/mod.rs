@@ -375,15 +375,13 @@ impl RationalGenerator {
         let size = 3 + i64::try_from(self.trial / 8).unwrap_or(0);
         let parts = if self.trial < PLAIN_TRIALS { 1 } else { 1 + i64::try_from(self.trial % 7).unwrap_or(0) };
         let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap_or(Rational::ONE);
-        // Now and then near zero, or near the only bound: there inverse functions have values.
-        let small = match self.trial % 8 {
-            3 => Some(9),
-            7 => Some(90),
-            _ => None,
-        };
-        let distance = match small {
-            Some(parts) => ratio(self.integer(1, 8), parts),
-            None => ratio(self.integer(1, size * parts), parts),
+        // Now and then near zero, or near the only bound: there inverse functions have values. Now and then at the
+        // magnitudes of temperatures and pressures: `exp(-5000/T)` is next to nothing at small ones.
+        let distance = match self.trial % 16 {
+            3 | 11 => ratio(self.integer(1, 8), 9),
+            7 | 15 => ratio(self.integer(1, 8), 90),
+            13 => ratio(100 * self.integer(1, 8), 1),
+            _ => ratio(self.integer(1, size * parts), parts),
         };
         match (low, high) {
             (Some(low), Some(high)) => {
