@@ -124,6 +124,10 @@ struct IdentifiabilityReport {
     by_itself: Option<bool>,
     /// Trajectories on which not all unknowns are identifiable.
     blind: Vec<BlindReport>,
+    /// `blind` lists all of those with constant inputs; `None` unless the unknowns are identifiable over time.
+    blind_complete: Option<bool>,
+    /// `conditions` hold all values of the parameters at which unknowns are never identifiable; likewise.
+    parameters_complete: Option<bool>,
     gram: Option<GramReport>,
 }
 
@@ -324,6 +328,7 @@ fn blind(plant: &Plant, blind: &BlindTrajectory) -> BlindReport {
 fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> IdentifiabilityReport {
     let arena = &plant.arena;
     let result = claim.result.as_ref();
+    let trajectories = result.and_then(|result| result.trajectories.as_ref());
     IdentifiabilityReport {
         verdict: claim.verdict.word(),
         kind: result.map(|r| r.kind.word()),
@@ -332,13 +337,14 @@ fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> Identifiabi
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),
         by_itself: result.and_then(|r| match r.kind {
             Excitation::Instant => Some(true),
-            Excitation::Excitation => r.trajectories.as_ref().and_then(|trajectories| trajectories.by_itself),
+            Excitation::Excitation => trajectories.and_then(|trajectories| trajectories.by_itself),
             Excitation::Never => None,
         }),
-        blind: result
-            .and_then(|r| r.trajectories.as_ref())
+        blind: trajectories
             .map(|trajectories| trajectories.blind.iter().map(|blind| self::blind(plant, blind)).collect())
             .unwrap_or_default(),
+        blind_complete: trajectories.map(|trajectories| trajectories.everywhere),
+        parameters_complete: trajectories.map(|trajectories| trajectories.parameters),
         gram: result.and_then(|r| r.gram.as_ref()).map(|gram| GramReport {
             matrix: matrix(arena, &gram.matrix),
             determinant: arena.print(gram.determinant),

@@ -17,9 +17,8 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
 
-/// The share of the remaining budget for equilibria: one part in so many, as trajectories that are not at rest were
-/// examined before.
-const SHARE: u64 = 2;
+/// The share of the remaining budget for equilibria, as for other trajectories.
+const SHARE: u64 = 8;
 
 /// Adds to the trajectories of a regression those at equilibria.
 pub(in crate::analysis::identifiability) fn add(
@@ -34,11 +33,11 @@ pub(in crate::analysis::identifiability) fn add(
     }
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let held = problem.signals_at_rest();
-    let families = plant.arena.budget().share(SHARE, || problem.families(&held));
-    let rest = match families {
+    // Remarks on equilibria do not use up the budget of the other claims.
+    let rest = plant.arena.budget().share(SHARE, || match problem.families(&held) {
         Ok(families) => problem.joined(&families, &trajectories.blind, &held),
         Err(_) => problem.at_constant_signals(&held),
-    };
+    });
     trajectories.at_rest = rest.identified;
     trajectories.everywhere &= rest.all || !rest.identified;
     let of_undecided = |blind: &BlindTrajectory| match blind.condition {
