@@ -67,7 +67,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     let mut lines = vec![match result.kind {
         Excitation::Instant => format!("{}: {regressor} has full column rank", result.kind.word()),
         Excitation::Excitation if result.trajectories.as_ref().is_some_and(Trajectories::is_divided) => {
-            format!("over time: {regressor} has full column rank over the parts of the domain together")
+            format!("over time: {regressor} has full column rank over the cells of the domain combined")
         }
         Excitation::Excitation => format!("over time: {regressor} and its derivatives have full column rank"),
         Excitation::Never => {

@@ -29,7 +29,7 @@ const FEW_POINTS: usize = 2;
 
 /// A cell and its rows.
 pub(super) struct CellRows<'a> {
-    pub(super) part: &'a Cell,
+    pub(super) cell: &'a Cell,
     pub(super) rows: Vec<Vec<Expr>>,
 }
 
@@ -38,17 +38,17 @@ pub(super) fn all_identified(
     plant: &Plant,
     cascade: &Cascade,
     varies: impl Fn(Expr) -> bool,
-    parts: &[CellRows<'_>],
+    cells: &[CellRows<'_>],
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
-    let mut identified = vec![false; parts.len()];
-    for first in 0..parts.len() {
-        for second in first + 1..parts.len() {
-            let Some(border) = border(parts[first].part, parts[second].part) else { continue };
+    let mut identified = vec![false; cells.len()];
+    for first in 0..cells.len() {
+        for second in first + 1..cells.len() {
+            let Some(border) = border(cells[first].cell, cells[second].cell) else { continue };
             if identified[first] && identified[second] {
                 continue;
             }
-            let pair = [&parts[first], &parts[second]];
+            let pair = [&cells[first], &cells[second]];
             if passes(plant, cascade, &varies, pair, border, unknowns)? {
                 identified[first] = true;
                 identified[second] = true;
@@ -60,7 +60,7 @@ pub(super) fn all_identified(
 
 /// The border function of two cells, if it is one formula alone.
 fn border(first: &Cell, second: &Cell) -> Option<Expr> {
-    let is_of = |part: &Cell, side: &(Expr, Side)| part.sides.contains(side);
+    let is_of = |cell: &Cell, side: &(Expr, Side)| cell.sides.contains(side);
     let mut apart = first.sides.iter().filter(|side| !is_of(second, side));
     let (expr, _) = apart.next()?;
     let same = first.sides.len() == second.sides.len() && second.sides.iter().any(|(other, _)| other == expr);
@@ -86,7 +86,7 @@ fn passes(
     let mut rates = Vec::new();
     let mut rows = Vec::new();
     for cell in pair {
-        let domain = &cell.part.domain;
+        let domain = &cell.cell.domain;
         let rate = Flow::new(plant, domain, cascade)?.rate(arena, border);
         let entries: Vec<Expr> = cell.rows.iter().flatten().copied().chain([rate]).collect();
         let mut sides = as_on(arena, domain, &entries)?;
@@ -97,7 +97,7 @@ fn passes(
         rates.extend(sides.pop());
         rows.extend(sides);
     }
-    let there = on_border(plant, &pair[0].part.domain, border);
+    let there = on_border(plant, &pair[0].cell.domain, border);
     let product = arena.product(rates);
     let all: Vec<Expr> = rows.iter().copied().chain([product, border]).collect();
     let found = there.points(arena, &all).take(MOST_POINTS).any(|point| {
@@ -112,8 +112,8 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&CellRows<'_>; 2], unk
     let [here, there] = pair.map(|cell| cell.rows.concat());
     let both = [here.as_slice(), &there].concat();
     // The derivatives of inputs are other symbols, and are the same: that is enough.
-    pair[0].part.domain.points(arena, &both).take(MOST_POINTS).any(|point| {
-        let domain = pair[1].part.domain.beside(&point, inputs);
+    pair[0].cell.domain.points(arena, &both).take(MOST_POINTS).any(|point| {
+        let domain = pair[1].cell.domain.beside(&point, inputs);
         let mut others = domain.points(arena, &both).take(FEW_POINTS);
         others.any(|other| {
             let values = [arena.substitute_all(&here, &point), arena.substitute_all(&there, &other)].concat();
@@ -129,7 +129,7 @@ fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Ob
 }
 
 /// The points of the border, with the other assumptions of a cell.
-fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
+fn on_border(plant: &Plant, cell: &Domain, border: Expr) -> Domain {
     let arena = &plant.arena;
     let assumed = plant.assumed();
     let equations: Vec<Expr> = assumed.manifold.equations().iter().copied().chain([border]).collect();
@@ -139,7 +139,7 @@ fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
     let manifold = Manifold::new(arena, &assumed.facts, equations, vec![signals, parameters]);
     let met = Domain { manifold: manifold.clone(), ..assumed.clone() };
     let mut facts = Facts::new();
-    for (fact, relation) in part.facts.iter() {
+    for (fact, relation) in cell.facts.iter() {
         // The border is excluded as a border alone, unless the author excludes it too.
         let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
         let is_border = decide(arena, fact, &met).is_zero();
@@ -147,5 +147,5 @@ fn on_border(plant: &Plant, part: &Domain, border: Expr) -> Domain {
             facts.assume(fact, relation);
         }
     }
-    Domain { facts, manifold, ..part.clone() }
+    Domain { facts, manifold, ..cell.clone() }
 }

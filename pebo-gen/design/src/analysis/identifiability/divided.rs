@@ -74,18 +74,18 @@ pub(super) fn decide(
 ) -> Result<Claim<Identifiability>, Obstacle> {
     let arena = &plant.arena;
     let mut reported = Vec::new();
-    let whole = on_parts(plant, domain, (cascade, regression), formulas, &mut reported, &on)?;
+    let whole = on_cells(plant, domain, (cascade, regression), formulas, &mut reported, &on)?;
     let identified =
         |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     if identified(&whole) {
-        let parts = domain.cells(arena, &formulas.all(), |expr| !varies(plant, expr))?;
-        for part in parts.iter().filter(|part| !part.sides.is_empty()) {
-            let claim = on_parts(plant, &part.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
+        let cells = domain.cells(arena, &formulas.all(), |expr| !varies(plant, expr))?;
+        for cell in cells.iter().filter(|cell| !cell.sides.is_empty()) {
+            let claim = on_cells(plant, &cell.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
             let at_once = |claim: &Claim<Identifiability>| {
                 claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
             };
             if !identified(&claim) || at_once(&whole) && !at_once(&claim) {
-                found.push(depends_on_signs(plant, part));
+                found.push(depends_on_signs(plant, cell));
                 return Ok(Claim { verdict: Verdict::Undecided, result: None });
             }
         }
@@ -101,9 +101,9 @@ pub(super) fn varies(plant: &Plant, expr: Expr) -> bool {
 }
 
 /// With parameters of other signs there is another answer.
-fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
+fn depends_on_signs(plant: &Plant, cell: &Cell) -> Diagnostic {
     let sides: Vec<String> =
-        part.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
+        cell.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
     Diagnostic::error(
         Code::IdentifiabilityUndecided,
         at_phi(plant),
@@ -114,8 +114,8 @@ fn depends_on_signs(plant: &Plant, part: &Cell) -> Diagnostic {
 }
 
 /// No cell identifies all unknowns, and no trajectory was found that passes from one into another and identifies them.
-fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
-    let dividers: BTreeSet<Expr> = parts.iter().flat_map(|part| part.sides.iter().map(|(expr, _)| *expr)).collect();
+fn not_combined(plant: &Plant, cells: &[Cell]) -> Diagnostic {
+    let dividers: BTreeSet<Expr> = cells.iter().flat_map(|cell| cell.sides.iter().map(|(expr, _)| *expr)).collect();
     let dividers: Vec<String> = dividers.into_iter().map(|expr| format!("`{}`", plant.arena.print(expr))).collect();
     Diagnostic::error(
         Code::IdentifiabilityUndecided,
@@ -133,17 +133,17 @@ fn parted(plant: &Plant, parts: &[Cell]) -> Diagnostic {
 
 /// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
 /// same.
-fn of_parts(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], parts: usize) -> Vec<BlindTrajectory> {
+fn of_cells(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], cells: usize) -> Vec<BlindTrajectory> {
     let key = |blind: &BlindTrajectory| (blind.condition(plant), blind.identifiable.clone());
     let mut found: Vec<BlindTrajectory> = Vec::new();
-    for (part, trajectories) in within {
+    for (cell, trajectories) in within {
         for trajectory in trajectories {
             let is_same =
                 |(_, others): &&(&Cell, Vec<BlindTrajectory>)| others.iter().any(|other| key(other) == key(trajectory));
-            let condition = if within.iter().filter(is_same).count() == parts {
+            let condition = if within.iter().filter(is_same).count() == cells {
                 trajectory.condition.clone()
             } else {
-                TrajectoryCondition::Within(part.sides.clone(), Box::new(trajectory.condition.clone()))
+                TrajectoryCondition::Within(cell.sides.clone(), Box::new(trajectory.condition.clone()))
             };
             let trajectory = BlindTrajectory { condition, ..trajectory.clone() };
             if !found.iter().any(|other| key(other) == key(&trajectory)) {
@@ -155,7 +155,7 @@ fn of_parts(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], parts: usiz
 }
 
 /// The decision on a domain from those on its cells.
-fn on_parts(
+fn on_cells(
     plant: &Plant,
     domain: &Domain,
     (cascade, regression): (&Cascade, &Regression),
@@ -167,11 +167,11 @@ fn on_parts(
     let varies = |expr: Expr| varies(plant, expr);
     let mut reported = Vec::new();
     let whole = on(domain, &mut reported);
-    let instant = |part: &Cell| on(&part.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
+    let instant = |cell: &Cell| on(&cell.domain, &mut Vec::new()).kind() == Some(Excitation::Instant);
     if whole.kind() == Some(Excitation::Instant) {
         let listed = whole.claim.result.as_ref().is_some_and(|result| result.everywhere_else);
         let everywhere = match domain.cells(arena, &formulas.of_regressor(), varies) {
-            Ok(parts) => parts.len() == 1 || parts.iter().all(instant),
+            Ok(cells) => cells.len() == 1 || cells.iter().all(instant),
             // The drop of the rank is reported even so.
             Err(Obstacle::TooLarge | Obstacle::OutOfBudget | Obstacle::NoPoint) if listed => true,
             Err(obstacle) => return Err(obstacle),
@@ -181,21 +181,21 @@ fn on_parts(
             return Ok(whole.claim);
         }
     }
-    let parts = domain.cells(arena, &formulas.all(), varies)?;
-    if parts.len() == 1 {
+    let cells = domain.cells(arena, &formulas.all(), varies)?;
+    if cells.len() == 1 {
         found.extend(reported);
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
     let mut within: Vec<(&Cell, Vec<BlindTrajectory>)> = Vec::new();
-    let mut cells = Vec::new();
+    let mut observed = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
     let mut by_itself = Some(true);
     let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
-    for part in &parts {
+    for cell in &cells {
         let mut reported = Vec::new();
-        let decided = on(&part.domain, &mut reported);
+        let decided = on(&cell.domain, &mut reported);
         match decided.kind() {
             None => {
                 found.extend(reported);
@@ -206,15 +206,15 @@ fn on_parts(
                 let trajectories = decided.claim.result.as_ref().and_then(|result| result.trajectories.as_ref());
                 let also = trajectories.and_then(|trajectories| trajectories.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
-                within.extend(trajectories.map(|trajectories| (part, trajectories.blind.clone())));
+                within.extend(trajectories.map(|trajectories| (cell, trajectories.blind.clone())));
             }
             Some(Excitation::Never) => blind.push(BlindTrajectory {
-                condition: TrajectoryCondition::Cell(part.sides.clone()),
+                condition: TrajectoryCondition::Cell(cell.sides.clone()),
                 identifiable: identifiable(arena, symbols, &decided.hidden),
                 hidden: decided.hidden.clone(),
             }),
         }
-        cells.push(CellRows { part, rows: decided.rows });
+        observed.push(CellRows { cell, rows: decided.rows });
         if let Some(result) = decided.claim.result {
             parameters &= result.trajectories.is_none_or(|trajectories| trajectories.parameters);
             for constant in result.constants {
@@ -224,7 +224,7 @@ fn on_parts(
             }
         }
     }
-    if blind.len() == parts.len() {
+    if blind.len() == cells.len() {
         // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
         let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
         if whole.kind() == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
@@ -232,19 +232,19 @@ fn on_parts(
             return Ok(whole.claim);
         }
         // A fundamental matrix varies with time: rows of two instants do not compare.
-        let entries: Vec<Expr> = cells.iter().flat_map(|cell| cell.rows.concat()).collect();
+        let entries: Vec<Expr> = observed.iter().flat_map(|cell| cell.rows.concat()).collect();
         let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
         if by_psi {
             return Err(Obstacle::NoWitness);
         }
-        if !all_identified(plant, cascade, varies, &cells, regression.eta.len())? {
-            found.push(parted(plant, &parts));
+        if !all_identified(plant, cascade, varies, &observed, regression.eta.len())? {
+            found.push(not_combined(plant, &cells));
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
     // Several cells identify the unknowns while the plant moves from one to the other.
-    let by_itself = by_itself.filter(|_| blind.len() < parts.len());
-    blind.extend(of_parts(plant, &within, parts.len()));
+    let by_itself = by_itself.filter(|_| blind.len() < cells.len());
+    blind.extend(of_cells(plant, &within, cells.len()));
     // On the borders too a column may vanish.
     let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
     let is_undecided = |of: &BlindTrajectory| matches!(of.condition, TrajectoryCondition::Undecided(_));

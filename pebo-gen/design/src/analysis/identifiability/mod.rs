@@ -104,7 +104,7 @@ fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
     Diagnostic::error(
         Code::IdentifiabilityUndecided,
         plant.identities.first().map_or_else(|| at_phi(plant), |identity| identity.span),
-        "the identities hold on several parts of the domain, and a rank at a point of one says nothing of the others",
+        "the identities hold on several components of the domain, and a rank at a point of one says nothing of the others",
     )
     .label(format!("`{zero} = 0` holds in several ways"))
     .help("write the factor that is zero under `identities`, or exclude the others under `assume`")

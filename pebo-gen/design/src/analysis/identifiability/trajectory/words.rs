@@ -14,7 +14,7 @@ impl Trajectories {
     /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
-            _ if self.is_divided() => self.of_parts(),
+            _ if self.is_divided() => self.of_cells(),
             (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
@@ -51,7 +51,7 @@ impl Trajectories {
     }
 
     /// The first line where there are cells of the domain in which not all unknowns are identifiable.
-    fn of_parts(&self) -> &'static str {
+    fn of_cells(&self) -> &'static str {
         match (self.by_itself, self.at_rest) {
             (Some(true), true) => {
                 "the unknowns are identified on almost every trajectory that does not stay where one of these holds"
