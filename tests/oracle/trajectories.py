@@ -44,6 +44,11 @@ GRID = [-2, -1, 0, Rational(1, 2), 1, 2]
 MOST_EQUILIBRIA = 60
 
 
+def ordinary(draw):
+    """A number at which no coefficient is special, as it is at 0 and 1."""
+    return Rational(draw.choice([-1, 1]) * (draw.randint(20, 300) * 97 + 1), 97**2)
+
+
 class Plant:
     """A random plant, its text, and its coefficients."""
 
@@ -112,7 +117,7 @@ class Plant:
             for order in range(self.n + 1):
                 here = SYMBOLS[name] if order == 0 else Symbol(f"{name}_{order}")
                 levels[here] = Symbol(f"{name}_{order + 1}")
-                values[levels[here]] = Rational(draw.randint(-9, 9), draw.randint(1, 5))
+                values[levels[here]] = ordinary(draw)
         flow = rates | levels
         latest, stack = c, [c.subs(values)]
         for _ in range(1, self.n):
@@ -179,8 +184,7 @@ def complaints(plant, answer, draw):
     listed = [Listed(entry) for entry in found["blind"] or []]
     names = plant.x + plant.y + plant.u
     for _ in range(6):
-        # Of no special value, as 0 and 1 are.
-        values = {SYMBOLS[name]: Rational(draw.choice([-1, 1]) * draw.randint(20, 300), 97) for name in names}
+        values = {SYMBOLS[name]: ordinary(draw) for name in names}
         point = values | {SYMBOLS["w"]: plant.value}
         if plant.positive:
             point[SYMBOLS["x1"]] = abs(point[SYMBOLS["x1"]]) + 1
