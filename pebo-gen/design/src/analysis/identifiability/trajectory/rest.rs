@@ -171,7 +171,9 @@ impl TrajectoryProblem<'_> {
             });
             return Rest { identified: false, all: true, blind: blind.into_iter().collect() };
         }
-        let mut rest = Rest { identified: true, all: true, blind: Vec::new() };
+        // Exceptions need something that they are exceptions of.
+        let identified = families.iter().any(|family| !is_hidden(family));
+        let mut rest = Rest { identified, all: true, blind: Vec::new() };
         for family in families {
             let cover = self.cover(listed, family);
             if cover.is_some_and(|blind| !blind.hidden.is_empty()) {
