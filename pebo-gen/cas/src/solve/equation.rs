@@ -1,8 +1,8 @@
 //! An equation, and the inverses that take more than the table of functions: of powers and of a sine beside a cosine.
 
-use crate::graph::function::Function;
+use crate::graph::function::{Function, Parity};
 use crate::tower::{Field, Obstacle};
-use crate::{Arena, Domain, Expr, Rational};
+use crate::{Arena, Domain, Expr, Rational, Relation};
 
 /// `formula = value`.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,21 @@ pub(super) fn unpower(
     let even = exponent.numerator().trailing_zeros() > 0;
     let negative = even && field.signs().is_positive(&fraction.opposite()).ok()?;
     Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
+}
+
+/// `inside = inverse(value)`: of an even function the negative of that where the argument is known to be negative.
+pub(super) fn uncall(
+    arena: &Arena,
+    domain: &Domain,
+    function: Function,
+    inside: Expr,
+    value: Expr,
+) -> Option<Equation> {
+    let row = function.row();
+    let principal = arena.call(row.inverse?, &[value]);
+    let is_negative =
+        row.parity == Some(Parity::Even) && domain.implies(arena, arena.neg(inside), Relation::NonNegative);
+    Some(Equation { formula: inside, value: if is_negative { arena.neg(principal) } else { principal } })
 }
 
 /// The angle with this sine and cosine, a common positive denominator left out.

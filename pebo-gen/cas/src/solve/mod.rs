@@ -27,7 +27,7 @@ use crate::graph::function::Function;
 use crate::number::interval::Precision;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Domain, Rational};
-use equation::{angle_of, unpower};
+use equation::{angle_of, uncall, unpower};
 
 pub use cleared::cleared;
 pub use equation::Equation;
@@ -235,7 +235,7 @@ fn turned_once(arena: &Arena, domain: &Domain, equation: Equation, open: &BTreeS
         }
         Node::Call(function, arguments) => {
             let [inside] = arguments.as_ref() else { return None };
-            Some(Equation { formula: *inside, value: arena.call(function.row().inverse?, &[value]) })
+            uncall(arena, domain, function, *inside, value)
         }
         Node::Symbol(_) | Node::Number(_) | Node::Pi => None,
     }
@@ -307,8 +307,7 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
             },
             Node::Call(function, arguments) => {
                 let inside = arguments[0];
-                let alone =
-                    || function.row().inverse.map(|f| Equation { formula: inside, value: arena.call(f, &[value]) });
+                let alone = || uncall(arena, domain, function, inside, value);
                 match function {
                     Function::Cos => match beside(arena, known, Function::Sin, inside) {
                         Some(sin) => Some(Equation { formula: inside, value: angle_of(arena, domain, sin, value) }),
@@ -346,6 +345,18 @@ mod tests {
         let unknowns: Vec<Symbol> = arena.symbols_of(&[unknown]).into_iter().collect();
         let candidates = solve(arena, domain, &equations, &unknowns).unwrap();
         arena.print(candidates[&unknowns[0]][0])
+    }
+
+    #[test]
+    fn even_functions_have_the_branch_of_their_argument() {
+        let arena = Arena::new();
+        let p = arena.variable("p");
+        let cosine = [arena.call(Function::Cos, &[p])];
+        for (positive, expected) in [(p, "acos(z1)"), (arena.neg(p), "-acos(z1)")] {
+            let mut domain = Domain::default();
+            domain.facts.assume(positive, Relation::Positive);
+            assert_eq!(solved(&arena, &domain, &cosine, p), expected);
+        }
     }
 
     #[test]
