@@ -65,14 +65,19 @@ impl Domain {
     /// True if the expression compares so whatever the sums are of which it takes sines and cosines: `2 - cos(q - r)` is
     /// positive as `2 - cos(q)` is, which the sum of products that is its normal form does not show.
     fn implies_of_combined_angles(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        let known: Vec<Expr> = self.facts.iter().map(|(fact, _)| fact).chain([expr]).collect();
+        let taken = arena.symbols_of(&known);
+        // Of a name that is not in use: a sum may hold angles that stand for others already.
+        let mut fresh = (1..).map(|n| arena.generated(&format!("angle{n}"))).filter(|angle| !taken.contains(angle));
         let mut angles: FxHashMap<Expr, Expr> = FxHashMap::default();
         for node in arena.postorder(&[expr]) {
             if let Node::Call(Function::Sin | Function::Cos, arguments) = arena.node(node)
                 && matches!(arena.node(arguments[0]), Node::Sum(_))
                 && !arena.symbols_of(&arguments).is_empty()
+                && !angles.contains_key(&arguments[0])
+                && let Some(angle) = fresh.next()
             {
-                let angle = arena.generated(&format!("angle{}", angles.len() + 1));
-                angles.entry(arguments[0]).or_insert_with(|| arena.of_symbol(angle));
+                angles.insert(arguments[0], arena.of_symbol(angle));
             }
         }
         if angles.is_empty() {
@@ -207,6 +212,11 @@ mod tests {
             arena.sub(arena.one(), cosine(arena.sub(q, r))),
             Relation::Positive
         ));
+        // An angle that stands for a sum already is not taken for another: the cosines differ.
+        let inner = arena.of_symbol(arena.generated("angle1"));
+        let difference = arena.sub(cosine(inner), cosine(arena.add(inner, q)));
+        let positive = arena.add(difference, arena.number(Rational::new(19, 10).unwrap()));
+        assert!(!Domain::default().implies(&arena, positive, Relation::Positive));
         let mut domain = Domain::default();
         let square = |e| arena.mul(e, e);
         domain.facts.assume(arena.sub(c, square(b)), Relation::Positive);
