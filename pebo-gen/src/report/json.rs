@@ -154,6 +154,8 @@ struct OperatingPointReport {
     verdict: &'static str,
     /// The determined signals as functions of the free ones.
     values: IndexMap<String, String>,
+    /// Signs that free signals have there.
+    within: Vec<String>,
     /// z' vanishes there by the cascade: `h`, or `lambda z + h` of the generalised one.
     still: Option<bool>,
     /// The rank of `[f; h_i]` at almost every point, and there: if it falls, Frobenius' theorem gives no transform.
@@ -358,6 +360,7 @@ fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointRe
     let without = |reason| OperatingPointReport {
         verdict,
         values: IndexMap::new(),
+        within: Vec::new(),
         still: None,
         rank: None,
         reason: Some(reason),
@@ -366,6 +369,7 @@ fn operating_point(arena: &Arena, equilibrium: &Equilibrium) -> OperatingPointRe
         Equilibrium::At(point) => OperatingPointReport {
             verdict,
             values: point.values.iter().map(|(s, e)| (arena.name(*s), arena.print(*e))).collect(),
+            within: point.sides.iter().map(|(e, side)| format!("{} {}", arena.print(*e), side.sign())).collect(),
             still: Some(point.still),
             rank: point.rank.filter(|_| point.still).map(|rank| [rank, 0]),
             reason: (!point.complete).then(|| ONE_OF_THEM.to_owned()),

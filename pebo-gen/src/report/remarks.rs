@@ -3,7 +3,9 @@
 
 use super::growth::Growth;
 use pebo_cas::{Expr, Symbol};
-use pebo_design::analysis::{Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict};
+use pebo_design::analysis::{
+    Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict, on_sides,
+};
 use pebo_design::plant::{Class as PlantClass, Plant};
 use pebo_design::source::listed;
 
@@ -149,6 +151,9 @@ fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
     let free: Vec<String> = states.filter(is_free).map(|symbol| plant.arena.name(symbol)).collect();
     if !free.is_empty() {
         lines.push(format!("free: {}", listed(free.iter().map(String::as_str))));
+    }
+    if !point.sides.is_empty() {
+        lines.push(format!("while {}", on_sides(plant, &point.sides)));
     }
     if !point.complete {
         lines.push(ONE_OF_THEM.to_owned());

@@ -81,7 +81,7 @@ pub(super) const NON_SMOOTH: &[Row] = &[
     (
         "a magnitude whose side depends on the sign of a parameter",
         "parameters: [k]\nx: [p]\ny: [q, s]\nu: [v]\nf_x: {p: 0}\nf_y: {q: v*q, s: p*(sqrt(k^2*q^2) - k*q)}\nphi: [p]",
-        Undecided(Code::IdentifiabilityUndecided),
+        Accepted("dynamic linear excitation"),
     ),
     // Absolute values that are written as other functions.
     (

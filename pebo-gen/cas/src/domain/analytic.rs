@@ -25,6 +25,18 @@ impl Domain {
         exprs.iter().map(|expr| known[expr]).collect()
     }
 
+    /// The domain with its equations by the branches that its inequalities imply.
+    pub(super) fn with_branches(self, arena: &Arena) -> Self {
+        let written = self.manifold.equations();
+        // An equation says nothing of its own branches.
+        let equations = self.without_equations().analytic(arena, written);
+        if equations == written {
+            return self;
+        }
+        let manifold = self.manifold.of(arena, &self.facts, equations);
+        Self { manifold, ..self }
+    }
+
     /// The branch of a non-smooth operation, if the domain implies one.
     fn branch(&self, arena: &Arena, function: Function, arguments: &[Expr]) -> Option<Expr> {
         let implies = |expr: Expr, relation| self.grants(arena, (expr, relation));
@@ -36,7 +48,8 @@ impl Domain {
             (Function::Abs, &[a]) => is_above(a, zero).then_some(a).or_else(|| is_above(zero, a).then(|| arena.neg(a))),
             (Function::Sign, &[a]) => {
                 let is_positive = |a: Expr| implies(a, Relation::Positive);
-                is_positive(a).then_some(one).or_else(|| is_positive(arena.neg(a)).then_some(minus_one))
+                let outside = is_positive(a).then_some(one).or_else(|| is_positive(arena.neg(a)).then_some(minus_one));
+                outside.or_else(|| (is_above(a, zero) && is_above(zero, a)).then_some(zero))
             }
             (Function::Max, &[a, b]) => is_above(a, b).then_some(a).or_else(|| is_above(b, a).then_some(b)),
             (Function::Min, &[a, b]) => is_above(a, b).then_some(b).or_else(|| is_above(b, a).then_some(a)),

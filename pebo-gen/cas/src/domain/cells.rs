@@ -12,8 +12,8 @@ use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Facts, Rational, Relation};
 
-/// The greatest number of cells that are examined one by one.
-const MOST_CELLS: usize = 16;
+/// The greatest number of cells that are examined one by one: three saturations divide a domain into 27.
+const MOST_CELLS: usize = 32;
 
 /// A cell of a domain.
 #[derive(Clone, Debug)]
@@ -39,6 +39,14 @@ impl Side {
         match self {
             Self::Positive => "> 0",
             Self::Negative => "< 0",
+        }
+    }
+
+    /// The expression that is positive where a divider has this sign.
+    pub fn positive(self, arena: &Arena, divider: Expr) -> Expr {
+        match self {
+            Self::Positive => divider,
+            Self::Negative => arena.neg(divider),
         }
     }
 }
@@ -67,6 +75,16 @@ impl Domain {
         }
         for cell in &cells {
             cell.domain.check_angles(arena, &cell.domain.analytic(arena, exprs), &varies)?;
+        }
+        Ok(cells)
+    }
+
+    /// The cells on which each of these expressions has a sign.
+    pub fn divided_by(&self, arena: &Arena, dividers: &[Expr]) -> Result<Vec<Cell>, Obstacle> {
+        let mut cells = vec![Cell { domain: self.clone(), sides: Vec::new() }];
+        for divider in dividers {
+            let finer: Vec<_> = cells.iter().map(|cell| cell.divide(arena, *divider)).collect::<Result<_, _>>()?;
+            cells = finer.concat();
         }
         Ok(cells)
     }
@@ -172,18 +190,43 @@ impl Domain {
 }
 
 impl Cell {
-    /// The two cells of this one on either side of a divisor, if they have points.
-    fn divide(&self, arena: &Arena, divisor: Expr) -> Result<Vec<Self>, Obstacle> {
-        let sides = [(Side::Positive, divisor), (Side::Negative, arena.neg(divisor))];
-        if sides.iter().any(|(_, positive)| self.domain.implies(arena, *positive, Relation::NonNegative)) {
+    /// The sides that determine the cell within a domain, and with its own equations: none of them follows from the
+    /// others.
+    pub fn distinct_sides(&self, arena: &Arena, whole: &Domain) -> Vec<(Expr, Side)> {
+        let mut sides = self.sides.clone();
+        let mut index = 0;
+        while index < sides.len() {
+            let (divider, side) = sides.remove(index);
+            let mut by_others = Domain { facts: whole.facts.clone(), ..self.domain.clone() };
+            for (other, side) in &sides {
+                by_others.facts.assume(side.positive(arena, *other), Relation::Positive);
+            }
+            if !by_others.implies(arena, side.positive(arena, divider), Relation::Positive) {
+                sides.insert(index, (divider, side));
+                index += 1;
+            }
+        }
+        sides
+    }
+
+    /// The two cells of this one on either side of a divider, if they have points: at the given values, or else at
+    /// others, which are then not given in the cell.
+    fn divide(&self, arena: &Arena, divider: Expr) -> Result<Vec<Self>, Obstacle> {
+        let sides = [Side::Positive, Side::Negative];
+        let positive = |side: Side| side.positive(arena, divider);
+        if sides.iter().any(|side| self.domain.implies(arena, positive(*side), Relation::NonNegative)) {
             return Ok(vec![self.clone()]);
         }
-        let one = |(side, positive): (Side, Expr)| {
+        let one = |side: Side| {
             let mut cell = self.clone();
-            cell.domain.facts.assume(positive, Relation::Positive);
-            cell.sides.push((divisor, side));
-            let met = cell.domain.points(arena, &[divisor]).next().is_some();
-            if met { Ok(cell) } else { Err(Obstacle::NoPoint) }
+            cell.domain.facts.assume(positive(side), Relation::Positive);
+            cell.domain = cell.domain.with_branches(arena);
+            cell.sides.push((divider, side));
+            let has_point = |cell: &Self| cell.domain.points(arena, &[divider]).next().is_some();
+            if !has_point(&cell) && !cell.domain.fixed.is_empty() {
+                cell.domain.fixed.clear();
+            }
+            if has_point(&cell) { Ok(cell) } else { Err(Obstacle::NoPoint) }
         };
         sides.into_iter().map(one).collect()
     }

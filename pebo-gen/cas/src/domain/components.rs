@@ -1,72 +1,151 @@
-//! The components of the points of a domain at which further equations hold.
+//! The components of the points of a domain at which further equations hold, cut into cells.
 //!
-//! In: a domain, equations, and the symbols that they are solved for. Out: domains, each with equations that no rule
-//! found to be a product. Together they hold every point of the domain at which the equations hold: `a*(s - 1) = 0` is
-//! `a = 0` or `s = 1`, and `a = 0` is left out where `a > 0` is assumed. A property proved at a point of a component
-//! holds almost everywhere in it, where formulas are analytic.
+//! In: a domain, equations, formulas, and the symbols that the equations are solved for. Out: cells, each with equations
+//! that no rule found to be a product, on which the equations and the formulas are analytic. Together they hold every
+//! point of the domain at which the equations hold: `a*(s - 1) = 0` is `a = 0` or `s = 1`, and `a = 0` is left out where
+//! `a > 0` is assumed; `a*|b| = a*b` is `b > 0`, `a = 0` with `b < 0`, and `b = 0`. A property
+//! proved at a point of such a cell holds almost everywhere in it.
 
 use std::collections::BTreeSet;
 
+use super::cells::{Cell, Side};
 use super::manifold::Manifold;
 use super::reducible::{Factors, factors};
+use super::zero::decide;
 use crate::graph::expr::{Expr, Symbol};
 use crate::tower::Obstacle;
-use crate::{Arena, Domain};
+use crate::{Arena, Domain, Relation};
 
-/// The greatest number of components that are examined one by one.
-const MOST_COMPONENTS: usize = 16;
+/// The greatest number of cells that are examined one by one: three signs of each of three dividers, with two
+/// components in each.
+const MOST_CELLS: usize = 54;
+
+/// A cell whose equations are still to be taken apart.
+struct OpenCell {
+    cell: Cell,
+    /// Equations of the cell: those that are given, by the branches of the cell, or factors of these.
+    equations: Vec<Expr>,
+    /// The dividers that vanish on the cell.
+    walls: Vec<Expr>,
+}
 
 impl Domain {
-    /// The components on which the equations hold too, solved for symbols of the groups, the last of which are
-    /// constants. None of them is known to be empty. An obstacle if there are too many, or if an equation remains that
-    /// may hold in several ways.
+    /// The cells of the components on which the equations hold too, solved for symbols of the groups, the last of which
+    /// are constants. On each of them the formulas are analytic in what varies. None of them is known to be empty. An
+    /// obstacle if there are too many, or if an equation remains that may hold in several ways.
     pub fn components(
         &self,
         arena: &Arena,
         equations: &[Expr],
+        formulas: &[Expr],
         groups: &[BTreeSet<Symbol>],
-    ) -> Result<Vec<Self>, Obstacle> {
+    ) -> Result<Vec<Cell>, Obstacle> {
         let own = self.manifold.equations().iter().chain(equations).copied().collect();
-        let mut open: Vec<Vec<Expr>> = vec![own];
+        let cell = Cell { domain: self.without_equations(), sides: Vec::new() };
+        let mut open = vec![OpenCell { cell, equations: own, walls: Vec::new() }];
         let mut found = Vec::new();
-        while let Some(equations) = open.pop() {
-            let manifold = Manifold::new(arena, &self.facts, equations, groups.to_vec());
-            let there = Self { manifold, ..self.clone() };
-            match there.finer(arena)? {
-                Some(finer) => open.extend(finer.into_iter().rev()),
-                None => found.push(there),
+        while let Some(next) = open.pop() {
+            match next.finer(arena, formulas, groups)? {
+                Finer::Cells(finer) => open.extend(finer.into_iter().rev()),
+                Finer::Whole(cell) => found.push(cell),
             }
-            if open.len() + found.len() > MOST_COMPONENTS {
+            if open.len() + found.len() > MOST_CELLS {
                 return Err(Obstacle::TooLarge);
             }
         }
         Ok(found)
     }
+}
 
-    /// The equations of finer components that hold the same points, if one of the equations is a product.
-    fn finer(&self, arena: &Arena) -> Result<Option<Vec<Vec<Expr>>>, Obstacle> {
-        let assumed = self.without_equations();
-        let equations = self.manifold.reduced(arena);
-        for (index, equation) in equations.iter().enumerate() {
-            let replaced = |factor: Expr| {
-                let mut finer = equations.clone();
-                finer[index] = factor;
-                finer
+/// A cell, as it is taken apart.
+enum Finer {
+    Cells(Vec<OpenCell>),
+    Whole(Cell),
+}
+
+impl OpenCell {
+    /// The finer cells that hold the same points; the cell itself if there are none.
+    fn finer(mut self, arena: &Arena, formulas: &[Expr], groups: &[BTreeSet<Symbol>]) -> Result<Finer, Obstacle> {
+        let manifold =
+            |equations: &[Expr]| Manifold::new(arena, &self.cell.domain.facts, equations.to_vec(), groups.to_vec());
+        // An equation says nothing of its own branches: the walls are other equations.
+        let on_walls = Domain { manifold: manifold(&self.walls), ..self.cell.domain.clone() };
+        self.equations = on_walls.analytic(arena, &self.equations);
+        let there = Domain {
+            manifold: manifold(&[self.equations.as_slice(), &self.walls].concat()),
+            ..self.cell.domain.clone()
+        };
+        if self.cell.sides.iter().any(|side| there.excludes(arena, side)) {
+            return Ok(Finer::Cells(Vec::new()));
+        }
+        // An equation that is solved for a symbol has one branch, however many its value has.
+        let unsolved = there.manifold.unsolved(arena);
+        let analytic = [unsolved, there.analytic(arena, formulas)].concat();
+        let constants = groups.last();
+        let varies = |divider: Expr| {
+            let is_constant = |symbol: &Symbol| constants.is_some_and(|constants| constants.contains(symbol));
+            !arena.symbols_of(&[divider]).iter().all(is_constant)
+        };
+        // As it is on the manifold: there it may be a constant.
+        let determined = there.manifold.determined();
+        let dividers = arena.dividers(&analytic).into_iter().map(|divider| arena.substitute(divider, &determined));
+        if let Some(divider) = dividers.into_iter().find(|divider| !there.has_sign(arena, *divider)) {
+            return match self.walls.contains(&divider) {
+                true => Err(Obstacle::Unsolved(arena.print(divider))),
+                false => Ok(Finer::Cells(self.divided(arena, divider, varies(divider)))),
             };
-            match factors(arena, &assumed, *equation)? {
+        }
+        let reduced = there.manifold.reduced(arena);
+        for (index, equation) in reduced.iter().enumerate() {
+            let replaced = |factor: Expr| {
+                let mut equations = reduced.clone();
+                equations[index] = factor;
+                Self { cell: self.cell.clone(), equations, walls: self.walls.clone() }
+            };
+            match factors(arena, &self.cell.domain, *equation)? {
                 Factors::One => {}
-                Factors::Several(factors) => return Ok(Some(factors.into_iter().map(replaced).collect())),
+                Factors::Several(factors) => return Ok(Finer::Cells(factors.into_iter().map(replaced).collect())),
                 Factors::Roots => return Err(Obstacle::Unsolved(arena.print(*equation))),
             }
         }
-        Ok(None)
+        Ok(Finer::Whole(Cell { domain: there, sides: self.cell.sides }))
+    }
+
+    /// The cells on both sides of a divider, and on it if it varies.
+    fn divided(&self, arena: &Arena, divider: Expr, varies: bool) -> Vec<Self> {
+        let side = |side: Side| {
+            let mut cell = self.cell.clone();
+            cell.domain.facts.assume(side.positive(arena, divider), Relation::Positive);
+            cell.sides.push((divider, side));
+            Self { cell, equations: self.equations.clone(), walls: self.walls.clone() }
+        };
+        let mut cells = vec![side(Side::Positive), side(Side::Negative)];
+        if varies && !self.cell.domain.implies(arena, divider, Relation::NonZero) {
+            let walls = [self.walls.as_slice(), &[divider]].concat();
+            cells.push(Self { cell: self.cell.clone(), equations: self.equations.clone(), walls });
+        }
+        cells
+    }
+}
+
+impl Domain {
+    /// True if no point has this side.
+    fn excludes(&self, arena: &Arena, (divider, side): &(Expr, Side)) -> bool {
+        self.implies(arena, arena.neg(side.positive(arena, *divider)), Relation::NonNegative)
+    }
+
+    /// True if the expression is positive, negative or zero throughout.
+    fn has_sign(&self, arena: &Arena, expr: Expr) -> bool {
+        self.implies(arena, expr, Relation::Positive)
+            || self.implies(arena, arena.neg(expr), Relation::Positive)
+            || decide(arena, expr, self).is_zero()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rational, Relation};
+    use crate::{Function, Rational};
 
     #[test]
     fn products_of_equations_are_taken_apart() {
@@ -81,11 +160,15 @@ mod tests {
             }
             let symbols = [a, b, c].iter().filter_map(|e| arena.as_symbol(*e)).collect();
             let groups = [BTreeSet::new(), symbols, BTreeSet::new()];
-            let shown = |there: Domain| {
-                let equations: Vec<String> = there.manifold.reduced(&arena).iter().map(|e| arena.print(*e)).collect();
-                equations.join(", ")
+            let shown = |there: Cell| {
+                let whole = Domain::default();
+                let equations = there.domain.manifold.reduced(&arena);
+                let equations = equations.iter().map(|e| arena.print(*e));
+                let sides = there.distinct_sides(&arena, &whole).into_iter();
+                let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
+                equations.chain(sides).collect::<Vec<_>>().join(", ")
             };
-            Some(domain.components(&arena, equations, &groups).ok()?.into_iter().map(shown).collect())
+            Some(domain.components(&arena, equations, &[], &groups).ok()?.into_iter().map(shown).collect())
         };
         let product = arena.mul(a, arena.sub(b, one));
         assert_eq!(components(&[product], &[]).unwrap(), ["a", "b - 1"]);
@@ -99,5 +182,41 @@ mod tests {
         // Three values of one symbol are not told apart.
         let cubic = arena.sum([arena.mul(a, square(a)), arena.scale(a, &Rational::from(-3)), one]);
         assert_eq!(components(&[cubic], &[]), None);
+    }
+    #[test]
+    fn equations_are_taken_apart_on_each_cell_and_on_its_walls() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let one = arena.one();
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let symbols: BTreeSet<Symbol> = [a, b].iter().filter_map(|e| arena.as_symbol(*e)).collect();
+        let groups = [BTreeSet::new(), symbols, arena.symbols_of(&[c])];
+        let components = |equations: &[Expr], formulas: &[Expr]| {
+            let shown = |there: Cell| {
+                let whole = Domain::default();
+                let equations = there.domain.manifold.reduced(&arena);
+                let equations = equations.iter().map(|e| arena.print(*e));
+                let sides = there.distinct_sides(&arena, &whole).into_iter();
+                let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
+                equations.chain(sides).collect::<Vec<_>>().join(", ")
+            };
+            let cells = Domain::default().components(&arena, equations, formulas, &groups).unwrap();
+            cells.into_iter().map(shown).collect::<Vec<_>>()
+        };
+        let size = |e| call(Function::Abs, &[e]);
+        assert_eq!(components(&[size(a)], &[]), ["a"]);
+        assert_eq!(components(&[arena.add(a, size(b))], &[]), ["a + abs(b)"]);
+        let sum = arena.add(a, size(b));
+        assert_eq!(components(&[sum], &[sum]), ["a + b, b > 0", "a - b, b < 0", "b, a"]);
+        // An equation does not imply itself.
+        assert_eq!(components(&[arena.sub(a, size(a))], &[]), ["a > 0", "a"]);
+        // Walls with a constant; a saturation has two.
+        assert_eq!(components(&[call(Function::Sat, &[arena.sub(a, c)])], &[]), ["a - c"]);
+        assert_eq!(components(&[b], &[size(arena.sub(a, c))]), ["b, a - c > 0", "b, a - c < 0", "b, a - c"]);
+        assert_eq!(components(&[b], &[size(c)]), ["b, c > 0", "b, c < 0"]);
+        assert_eq!(
+            components(&[arena.sub(a, one)], &[size(arena.sub(a, c))]),
+            ["a - 1, 1 - c > 0", "a - 1, 1 - c < 0"]
+        );
     }
 }

@@ -3,13 +3,13 @@
 //! In: a domain and an expression. Out: yes, if a fact, algebra over the facts and the equations, or an enclosure over
 //! the box that they state proves it; an undecided sign is not proved.
 
-use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 use crate::graph::arena::Arena;
-use crate::graph::expr::{Expr, Node};
+use crate::graph::expr::{Expr, Node, Symbol};
 use crate::graph::function::Function;
 use crate::tower::{Field, Fraction, Obstacle};
-use crate::{Domain, Facts, Relation};
+use crate::{Domain, Facts, Rational, Relation};
 
 /// The greatest number of non-smooth points of an expression that are examined, each from both sides.
 const MOST_BORDERS: usize = 2;
@@ -34,7 +34,7 @@ impl Domain {
 
     /// The same with an examination of both sides of so many non-smooth points of the expression.
     fn implies_across(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
-        if self.facts.iter().any(|fact| fact == (expr, relation)) {
+        if self.facts.iter().any(|(fact, known)| fact == expr && (known == relation || known == Relation::Positive)) {
             return true;
         }
         // A proof of a sign takes algebra; one point often refutes it.
@@ -62,33 +62,39 @@ impl Domain {
             || (signed && self.implies_of_combined_angles(arena, expr, relation))
     }
 
-    /// True if the expression compares so whatever the sums are of which it takes sines and cosines: `2 - cos(q - r)` is
-    /// positive as `2 - cos(q)` is, which the sum of products that is its normal form does not show.
+    /// True if the expression compares so in angles of its own for the sums of which it takes sines and cosines:
+    /// `2 - cos(q - r)` is positive as `2 - cos(q)` is, which the sum of products that is its normal form does not show.
+    /// An angle takes the place of a symbol of its sum, so that all values of the symbols are values of the others with
+    /// the angle; where no symbol is left, it has any values.
     fn implies_of_combined_angles(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         let known: Vec<Expr> = self.facts.iter().map(|(fact, _)| fact).chain([expr]).collect();
         let taken = arena.symbols_of(&known);
         // Of a name that is not in use: a sum may hold angles that stand for others already.
         let mut fresh = (1..).map(|n| arena.generated(&format!("angle{n}"))).filter(|angle| !taken.contains(angle));
-        let mut angles: FxHashMap<Expr, Expr> = FxHashMap::default();
-        for node in arena.postorder(&[expr]) {
-            if let Node::Call(Function::Sin | Function::Cos, arguments) = arena.node(node)
-                && matches!(arena.node(arguments[0]), Node::Sum(_))
-                && !arena.symbols_of(&arguments).is_empty()
-                && !angles.contains_key(&arguments[0])
-                && let Some(angle) = fresh.next()
-            {
-                angles.insert(arguments[0], arena.of_symbol(angle));
-            }
+        let mut all = known;
+        let mut angles: BTreeSet<Symbol> = BTreeSet::new();
+        while let Some(sum) = arena.angle_of_a_sum(&all[all.len() - 1..]) {
+            let Some(angle) = fresh.next() else { return false };
+            angles.insert(angle);
+            let own = arena.of_symbol(angle);
+            let replaced =
+                arena.unit_symbol(sum, |symbol| !angles.contains(symbol) && !self.fixed.contains_key(symbol));
+            all = match replaced {
+                Some((symbol, slope)) => {
+                    let rest = arena.sub(sum, arena.scale(arena.of_symbol(symbol), &slope));
+                    let value = arena.div(arena.sub(own, rest), arena.number(slope));
+                    arena.substitute_all(&all, &[(symbol, value)].into())
+                }
+                None => all.iter().map(|e| arena.replace(*e, &[(sum, own)].into_iter().collect())).collect(),
+            };
         }
-        if angles.is_empty() {
-            return false;
-        }
+        let Some(expr) = all.pop().filter(|_| !angles.is_empty()) else { return false };
         let mut free = self.without_equations();
         free.facts = Facts::new();
-        for (fact, relation) in self.facts.iter() {
-            free.facts.assume(arena.replace(fact, &angles), relation);
+        for ((_, relation), fact) in self.facts.iter().zip(all) {
+            free.facts.assume(fact, relation);
         }
-        free.implies_across(arena, arena.replace(expr, &angles), relation, 0)
+        free.implies_across(arena, expr, relation, 0)
     }
 
     /// True if the expression compares so on either side of a non-smooth point: there it has no absolute value of a
@@ -171,6 +177,30 @@ impl Domain {
     }
 }
 
+impl Arena {
+    /// A sum of which one of the expressions takes the sine or cosine.
+    fn angle_of_a_sum(&self, exprs: &[Expr]) -> Option<Expr> {
+        self.postorder(exprs).into_iter().find_map(|node| match self.node(node) {
+            Node::Call(Function::Sin | Function::Cos, arguments) => {
+                let is_one = matches!(self.node(arguments[0]), Node::Sum(_)) && !self.symbols_of(&arguments).is_empty();
+                is_one.then_some(arguments[0])
+            }
+            _ => None,
+        })
+    }
+
+    /// A symbol that a sum holds times a number, and not otherwise.
+    fn unit_symbol(&self, sum: Expr, admitted: impl Fn(&Symbol) -> bool) -> Option<(Symbol, Rational)> {
+        let Node::Sum(sum) = self.node(sum) else { return None };
+        sum.terms.iter().enumerate().find_map(|(place, (term, slope))| {
+            let symbol = self.as_symbol(*term).filter(&admitted)?;
+            let others = sum.terms.iter().enumerate().filter(|(other, _)| *other != place);
+            let is_apart = others.into_iter().all(|(_, (term, _))| !self.symbols_of(&[*term]).contains(&symbol));
+            is_apart.then(|| (symbol, slope.clone()))
+        })
+    }
+}
+
 /// The square of a short fraction, if that is more than a product: `sin(q)` has `1 - cos(q)^2`.
 fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
     const MOST_TERMS: usize = 16;
@@ -182,7 +212,6 @@ fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Ob
 mod tests {
     use super::*;
     use crate::Function;
-    use crate::Rational;
 
     #[test]
     fn divisors_of_a_fact_do_not_vanish() {
@@ -212,6 +241,16 @@ mod tests {
             arena.sub(arena.one(), cosine(arena.sub(q, r))),
             Relation::Positive
         ));
+        // A bound of a sum is one of its angle.
+        let mut bounded = Domain::default();
+        let angle = arena.sub(q, r);
+        bounded.facts.assume(angle, Relation::Positive);
+        bounded.facts.assume(arena.sub(arena.number(Rational::from(3)), angle), Relation::Positive);
+        let sine = arena.call(Function::Sin, &[angle]);
+        assert!(bounded.implies(&arena, sine, Relation::Positive));
+        assert!(!bounded.implies(&arena, arena.call(Function::Sin, &[arena.add(q, r)]), Relation::NonZero));
+        let before = |e| arena.call(Function::Sin, &[arena.neg(e)]);
+        assert!(bounded.implies(&arena, before(angle), Relation::NonZero));
         // An angle that stands for a sum already is not taken for another: the cosines differ.
         let inner = arena.of_symbol(arena.generated("angle1"));
         let difference = arena.sub(cosine(inner), cosine(arena.add(inner, q)));
@@ -251,5 +290,20 @@ mod tests {
             let implied = Domain::default().implies(&arena, expr, relation);
             assert_eq!(implied, expected, "{} {}", arena.print(expr), relation.sign());
         }
+    }
+
+    #[test]
+    fn sums_of_facts_are_implied() {
+        let arena = Arena::new();
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        for fact in [arena.sub(b, a), arena.sub(c, b), arena.sub(d, c)] {
+            domain.facts.assume(fact, Relation::Positive);
+        }
+        for (low, high) in [(a, b), (a, c), (a, d), (b, d)] {
+            assert!(domain.implies(&arena, arena.sub(high, low), Relation::Positive));
+            assert!(!domain.implies(&arena, arena.sub(low, high), Relation::NonNegative));
+        }
+        assert!(domain.implies(&arena, arena.sub(arena.sum([c, d]), arena.sum([a, b])), Relation::Positive));
     }
 }

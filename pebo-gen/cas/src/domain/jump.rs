@@ -5,7 +5,9 @@
 //! = 1, and `abs(q - 1)` nowhere. A border in which no symbol is affine is examined in normal forms.
 
 use super::zero::decide;
-use crate::graph::expr::Expr;
+use crate::graph::conditions::Regularity;
+use crate::graph::expr::{Expr, Node};
+use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Relation};
 
@@ -14,20 +16,20 @@ use crate::{Arena, Domain, Relation};
 pub struct Jump {
     /// The expression that is zero at the border.
     pub border: Expr,
-    /// The difference of the values on both sides, at the border.
-    pub by: Expr,
+    /// The difference of the values on both sides, at the border; none at a pole under a bounded function.
+    pub by: Option<Expr>,
 }
 
 impl Domain {
     /// The jumps of a function that are not excluded, at borders that vary.
     pub fn jumps(&self, arena: &Arena, expr: Expr, varies: impl Fn(Expr) -> bool) -> Result<Vec<Jump>, Obstacle> {
         let mut jumps = Vec::new();
-        for border in self.dividers(arena, &[expr])?.into_iter().filter(|border| varies(*border)) {
+        let is_open = |border: &Expr| {
             let signed = |side: Expr| self.implies(arena, side, Relation::NonNegative);
-            if signed(border) || signed(arena.neg(border)) {
-                continue;
-            }
-            let [above, below] = [self.on_side(arena, expr, border)?, self.on_side(arena, expr, arena.neg(border))?];
+            varies(*border) && !signed(*border) && !signed(arena.neg(*border))
+        };
+        for border in self.dividers(arena, &[expr])?.into_iter().filter(is_open) {
+            let [above, below] = [self.on_side(arena, expr, border), self.on_side(arena, expr, arena.neg(border))];
             let by = match crossing(arena, border) {
                 Some(place) => {
                     let at = |side: Expr| arena.substitute(side, &[place].into());
@@ -35,19 +37,25 @@ impl Domain {
                 }
                 None => arena.sub(above, below),
             };
-            if !decide(arena, by, self).is_zero() && !self.vanishes_with(arena, by, border)? {
-                jumps.push(Jump { border, by });
+            if !decide(arena, by, self).is_zero() && !self.vanishes_with(arena, by, border).unwrap_or(false) {
+                jumps.push(Jump { border, by: Some(by) });
             }
         }
+        let poles = bounded_poles(arena, expr).into_iter().filter(is_open);
+        jumps.extend(poles.map(|border| Jump { border, by: None }));
         Ok(jumps)
     }
 
-    /// The function where an expression is positive, in its normal form.
-    fn on_side(&self, arena: &Arena, expr: Expr, positive: Expr) -> Result<Expr, Obstacle> {
+    /// The function where an expression is positive, in its normal form if it has one.
+    fn on_side(&self, arena: &Arena, expr: Expr, positive: Expr) -> Expr {
         let mut domain = self.clone();
         domain.facts.assume(positive, Relation::Positive);
-        let field = Field::over(arena, &domain.facts, &[expr])?;
-        Ok(field.show(&field.fraction(expr)?))
+        let [branch] = domain.analytic(arena, &[expr])[..] else { return expr };
+        let normal = || {
+            let field = Field::over(arena, &domain.facts, &[branch])?;
+            Ok::<_, Obstacle>(field.show(&field.fraction(branch)?))
+        };
+        normal().unwrap_or(branch)
     }
 
     /// True if a function has a border for a factor of its numerator.
@@ -56,6 +64,19 @@ impl Domain {
         let (fraction, border) = (field.fraction(expr)?, field.fraction(border)?);
         Ok(fraction.numerator().div_exact(border.numerator(), field.limit())?.is_some())
     }
+}
+
+/// The zeros of denominators in the arguments of bounded functions: `atan(1/r)` jumps where r changes its sign, while
+/// `1/r` leaves all bounds.
+fn bounded_poles(arena: &Arena, expr: Expr) -> Vec<Expr> {
+    let bounded = [Function::Atan, Function::Tanh, Function::Sat, Function::Sign, Function::Sin, Function::Cos];
+    let arguments = arena.postorder(&[expr]).into_iter().filter_map(|node| match arena.node(node) {
+        Node::Call(function, arguments) if bounded.contains(&function) => Some(arguments.to_vec()),
+        _ => None,
+    });
+    let arguments: Vec<Expr> = arguments.flatten().collect();
+    let conditions = arena.domain_conditions(&arguments, Regularity::Defined).into_iter();
+    conditions.filter(|(_, relation)| *relation == Relation::NonZero).map(|(denominator, _)| denominator).collect()
 }
 
 /// The symbol in which a border is affine, and its value there.
@@ -73,7 +94,6 @@ fn crossing(arena: &Arena, border: Expr) -> Option<(crate::Symbol, Expr)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Function;
 
     #[test]
     fn continuous_non_smooth_functions_have_no_jump() {
@@ -84,7 +104,11 @@ mod tests {
         let (sign, size) = (call(Function::Sign, away), call(Function::Abs, away));
         let shown = |expr: Expr| {
             let jumps = Domain::default().jumps(&arena, expr, |_| true).unwrap();
-            jumps.iter().map(|jump| arena.print(jump.by)).collect::<Vec<_>>().join(", ")
+            jumps
+                .iter()
+                .map(|jump| jump.by.map_or_else(|| "a pole".to_owned(), |by| arena.print(by)))
+                .collect::<Vec<_>>()
+                .join(", ")
         };
         for smooth in [arena.mul(p, q), size, arena.mul(away, sign), arena.mul(p, call(Function::Log, size))] {
             let bent = arena.call(Function::Max, &[q, c]);
@@ -93,6 +117,10 @@ mod tests {
         assert_eq!(shown(sign), "2");
         assert_eq!(shown(arena.mul(q, sign)), "2*c");
         assert_eq!(shown(arena.add(p, arena.mul(p, sign))), "2*p");
+        // The domain condition of a quotient does not hide it.
+        assert_eq!(shown(arena.mul(p, arena.add(arena.number(crate::Rational::from(2)), sign))), "2*p");
+        assert_eq!(shown(call(Function::Atan, arena.div(p, away))), "a pole");
+        assert_eq!(shown(arena.div(p, away)), "");
         // No symbol is affine.
         let wave = call(Function::Cos, q);
         assert_eq!(shown(call(Function::Abs, wave)), "");

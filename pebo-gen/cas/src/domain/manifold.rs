@@ -81,7 +81,12 @@ impl Manifold {
 
     /// The manifold with values of symbols.
     pub(crate) fn substituted(&self, arena: &Arena, facts: &Facts, values: &Point) -> Self {
-        Self::new(arena, facts, arena.substitute_all(&self.equations, values), self.groups.clone())
+        self.of(arena, facts, arena.substitute_all(&self.equations, values))
+    }
+
+    /// The manifold of other equations, solved for the same symbols.
+    pub(crate) fn of(&self, arena: &Arena, facts: &Facts, equations: Vec<Expr>) -> Self {
+        Self::new(arena, facts, equations, self.groups.clone())
     }
 
     /// True if there is no equation.
@@ -98,7 +103,13 @@ impl Manifold {
     /// has several roots.
     pub fn values(&self) -> Option<BTreeMap<Symbol, Expr>> {
         let is_single = self.exact.open.is_empty() && self.exact.steps.iter().all(|step| step.root.is_none());
-        is_single.then(|| self.exact.steps.iter().map(|step| (step.symbol, step.middle)).collect())
+        is_single.then(|| self.determined())
+    }
+
+    /// The values of those symbols that have a single one.
+    pub(crate) fn determined(&self) -> BTreeMap<Symbol, Expr> {
+        let single = self.exact.steps.iter().filter(|step| step.root.is_none());
+        single.map(|step| (step.symbol, step.middle)).collect()
     }
 
     /// An equation that no exact step solves, so that the normal form does not use it.
@@ -114,6 +125,12 @@ impl Manifold {
     /// Expressions that vanish together where the equations hold: those of the exact steps, and the open equations.
     pub fn reduced(&self, arena: &Arena) -> Vec<Expr> {
         self.exact.steps.iter().map(|step| step.equation(arena)).chain(self.exact.open.iter().copied()).collect()
+    }
+
+    /// Those of [`Self::reduced`] that do not determine a symbol as a function of others.
+    pub(crate) fn unsolved(&self, arena: &Arena) -> Vec<Expr> {
+        let roots = self.exact.steps.iter().filter(|step| step.root.is_some()).map(|step| step.equation(arena));
+        roots.chain(self.exact.open.iter().copied()).collect()
     }
 
     /// The exact steps.

@@ -49,8 +49,33 @@ impl Answer {
     }
 }
 
-/// Decides whether the expression is zero on the domain.
+/// Decides whether the expression is zero on the domain: as it is written, and else on each cell on which it is
+/// analytic.
 pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
+    match decide_as_written(arena, expr, domain) {
+        Answer::Open(obstacle) if !arena.dividers(&[expr]).is_empty() => {
+            on_cells(arena, expr, domain).unwrap_or(Answer::Open(obstacle))
+        }
+        answer => answer,
+    }
+}
+
+/// The answer on the cells of the domain; none if these are not found, or one of them has no answer.
+fn on_cells(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Answer> {
+    for cell in domain.cells(arena, &[expr], |_| true).ok()? {
+        let branch = cell.domain.analytic(arena, &[expr])[0];
+        match decide_as_written(arena, branch, &cell.domain) {
+            Answer::Zero => {}
+            // A cell of other values than those that are given refutes nothing at these.
+            Answer::NonZero(witness) if cell.domain.fixed == domain.fixed => return Some(Answer::NonZero(witness)),
+            Answer::NonZero(_) | Answer::Open(_) => return None,
+        }
+    }
+    Some(Answer::Zero)
+}
+
+/// Decides it by the normal form of the expression as it is written.
+fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }

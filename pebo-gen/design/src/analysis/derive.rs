@@ -43,6 +43,9 @@ impl Derivation {
         for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
             conditions.list(&plant.arena, (*constant, Relation::NonZero));
         }
+        for positive in identifiability.result.iter().flat_map(|result| &result.positive) {
+            conditions.list(&plant.arena, (*positive, Relation::Positive));
+        }
         let unmet = [
             (Code::CascadeUndecided, "h", cascade.settle(|result| conditions.list_cascade(plant, result))),
             (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.list_left_inverse(plant, r))),

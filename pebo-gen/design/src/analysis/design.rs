@@ -223,12 +223,31 @@ pub struct Identifiability {
     pub everywhere_else: bool,
     /// Combinations of parameters without a known sign whose zeros lower the rank.
     pub constants: Vec<Expr>,
+    /// Combinations of parameters that are positive at the values of the file: with others of another sign the answer is
+    /// another one.
+    pub positive: Vec<Expr>,
     /// A direction of eta that no trajectory makes observable, where there is one.
     pub direction: Option<Vec<Expr>>,
     /// The motion that the unknowns need, where one instant does not identify them.
     pub trajectories: Option<Trajectories>,
     /// `Phi_1' Phi_1`, where `Phi_1` has full column rank at almost every point.
     pub gram: Option<Gram>,
+}
+
+impl Identifiability {
+    /// The answer of this kind, without conditions.
+    pub(crate) fn new(kind: Excitation) -> Self {
+        Self {
+            kind,
+            singular_where: Vec::new(),
+            everywhere_else: false,
+            constants: Vec::new(),
+            positive: Vec::new(),
+            direction: None,
+            trajectories: None,
+            gram: None,
+        }
+    }
 }
 
 /// The motion that makes unknowns identifiable which one instant does not identify.
@@ -276,6 +295,8 @@ pub enum TrajectoryCondition {
     Value(Symbol, Expr),
     /// All inputs are constant, and the input or parameter has this value.
     Steady(Symbol, Expr),
+    /// These are zero at all times, and the plant moves.
+    Zero(Vec<Expr>),
     /// This is zero at all times, and rows with all their derivatives may be of a lower rank: undecided.
     Undecided(Expr),
     /// At an equilibrium this is zero: likewise.

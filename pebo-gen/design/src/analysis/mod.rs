@@ -49,5 +49,6 @@ pub use design::{
     LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition, Verdict,
     Witness,
 };
+pub use identifiability::trajectory::words::on_sides;
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

@@ -26,12 +26,12 @@ pub(super) fn continuous(problem: &Problem<'_>, component: Expr) -> Option<Expr>
         let Some(jump) = open.first() else {
             return Some(if found == component { found } else { shortest(arena, domain, found) });
         };
-        let sign = arena.call(Function::Sign, &[jump.border]);
-        found = if moves(jump.by) {
+        let (sign, by) = (arena.call(Function::Sign, &[jump.border]), jump.by?);
+        found = if moves(by) {
             // On one side it may be the negative of a function that goes over.
             Some(arena.mul(sign, found)).filter(|other| jumps(*other).is_some_and(|left| left.len() < open.len()))?
         } else {
-            arena.sub(found, arena.mul(arena.scale(jump.by, &pebo_cas::number::rational::half()), sign))
+            arena.sub(found, arena.mul(arena.scale(by, &pebo_cas::number::rational::half()), sign))
         };
     }
     None

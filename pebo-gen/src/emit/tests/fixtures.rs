@@ -175,6 +175,7 @@ impl Sketch {
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 everywhere_else: true,
                 constants: Vec::new(),
+                positive: Vec::new(),
                 direction: None,
             }),
             diagnostics: Vec::new(),

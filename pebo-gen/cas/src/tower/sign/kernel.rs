@@ -1,9 +1,11 @@
 //! Signs of kernels: by their functions, by the ranges of their arguments, or by a fact about one alone.
 
+use crate::Rational;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::Poly;
+use crate::tower::Fraction;
 use crate::{Integer, Relation};
 
 use super::{Sign, Signs};
@@ -82,17 +84,30 @@ impl Signs<'_, '_> {
         }
     }
 
-    /// The sign of a sine or cosine by the range of its angle.
+    /// The sign of a sine or cosine by the range of its angle: one half turn about an extremum.
     fn by_angle(&self, function: Function, angle: Expr) -> Option<Sign> {
         if self.memory.round.facts.borrow().is_empty() {
             return None;
         }
         let right = self.field.scale(&self.field.fraction(self.field.arena.pi()).ok()?, &half()).ok()?;
         let angle = self.field.fraction(angle).ok()?;
-        // From the middle of the interval on which the function is positive.
-        let angle = if function == Function::Sin { self.field.sub(&angle, &right).ok()? } else { angle };
+        let turned = |angle: &Fraction, quarters: i64| {
+            self.field.sub(angle, &self.field.scale(&right, &Rational::from(quarters)).ok()?).ok()
+        };
+        // From the nearest maximum, then from the minima beside it.
+        let maximum = turned(&angle, i64::from(function == Function::Sin))?;
+        let nearest = self.within(&maximum, &right);
+        nearest.or_else(|| {
+            let beside = |quarters| self.within(&turned(&maximum, quarters)?, &right);
+            // A negative sign is known of what is not zero alone.
+            [2, -2].into_iter().find_map(beside).filter(|sign| *sign == Sign::Positive).map(|_| Sign::Negative)
+        })
+    }
+
+    /// The sign of the cosine of an angle within a right angle of zero.
+    fn within(&self, angle: &Fraction, right: &Fraction) -> Option<Sign> {
         let mut strict = true;
-        for distance in [self.field.sub(&right, &angle).ok()?, self.field.add(&right, &angle).ok()?] {
+        for distance in [self.field.sub(right, angle).ok()?, self.field.add(right, angle).ok()?] {
             match self.of(&distance).ok()?? {
                 Sign::Positive => {}
                 Sign::NonNegative => strict = false,

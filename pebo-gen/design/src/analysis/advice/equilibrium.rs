@@ -8,8 +8,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
+use pebo_cas::domain::cells::Side;
 use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::forms::oriented::Orientation;
+use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
@@ -25,6 +27,9 @@ const FOR_ALL: u64 = 64;
 
 /// Operations from which on a value is printed as it was found, and an unsolved equation is not printed.
 const MOST_TIDIED: usize = 40;
+
+/// Said where equilibria were found, but none in the domain of the observer.
+const NONE_WITHIN: &str = "no equilibrium that was looked at lies within the assumptions and conditions";
 
 /// The equilibrium of a plant.
 #[derive(Clone, Debug)]
@@ -42,6 +47,8 @@ pub enum Equilibrium {
 pub struct OperatingPoint {
     /// Determined symbols as functions of the free ones.
     pub values: Vec<(Symbol, Expr)>,
+    /// Signs that the free ones have there: in other cells of the domain the values are others, or none.
+    pub sides: Vec<(Expr, Side)>,
     /// True if there are no other equilibria: they are these, at all values of the free symbols.
     pub complete: bool,
     /// True if z' vanishes there too: `h`, of the generalised cascade `Lambda z + h`.
@@ -83,42 +90,60 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     let states = plant.x.iter().map(|s| s.symbol).chain(plant.y.iter().map(|o| o.symbol)).collect();
     let inputs = plant.commanded().chain(plant.w.iter().copied()).collect();
     let mut doubtful = None;
-    let mut equilibrium = |values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
+    let mut equilibrium_on = |domain: &Domain, values: &BTreeMap<Symbol, Expr>| match checked(plant, domain, values) {
         Ok(there) => Some((values.clone(), there)),
         Err(reason) => {
             doubtful.get_or_insert(reason);
             None
         }
     };
+    let mut equilibrium = |values: &BTreeMap<Symbol, Expr>| equilibrium_on(domain, values);
     let search = Elimination { arena, domain, states, inputs };
     let identities = plant.identities.iter().map(|identity| identity.expr);
     let equations: Vec<Expr> = rates.values().copied().chain(identities).collect();
     // If an equilibrium of the unmeasured states is too hard to find, zero is tried, as for momenta.
     let still = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
     let searched = arena.budget().share(2, || search.run(&equations, &[BTreeMap::new(), still], &mut equilibrium));
-    let family = arena.budget().share(FOR_ALL, || unique_family(plant, domain, &equations));
+    // Values may hold unmeasured states: no group is kept out of them.
+    let order = [vec![BTreeSet::new()], plant.elimination_order()].concat();
+    let families = arena.budget().share(FOR_ALL, || domain.components(arena, &equations, &[], &order));
+    let is_nowhere = families.as_ref().is_ok_and(Vec::is_empty);
+    let mut families = families.unwrap_or_default();
+    // With as many free signals as there may be: walls between cells come last.
+    families.sort_by_key(|family| family.domain.manifold.reduced(arena).len());
     let is_all = |values: &BTreeMap<Symbol, Expr>| {
         let holds = |family: &Domain, (symbol, value): (&Symbol, &Expr)| {
             decide(arena, arena.sub(arena.of_symbol(*symbol), *value), family).is_zero()
         };
-        family.as_ref().is_some_and(|(family, _)| values.iter().all(|value| holds(family, value)))
+        matches!(families.as_slice(), [family] if values.iter().all(|value| holds(&family.domain, value)))
     };
     // All equilibria rather than one of them.
-    let (searched, complete) = match searched {
-        Ok(Ok(found)) if is_all(&found.0) => (Ok(Ok(found)), true),
-        other => match family.as_ref().and_then(|(_, values)| equilibrium(values)) {
-            Some(all) => (Ok(Ok(all)), true),
-            None => (other, false),
-        },
+    let family = match &searched {
+        Ok(Ok((values, _))) if is_all(values) => None,
+        Ok(Ok(_)) if families.len() != 1 => None,
+        _ => families
+            .iter()
+            .find_map(|family| Some((family, equilibrium_on(&family.domain, &family.domain.manifold.values()?)?))),
     };
-    // At an equilibrium nothing moves: a state that always moves is looked for only if no such point was found.
+    let (sides, complete, searched) = match (family, searched) {
+        (Some((family, found)), _) => (family.distinct_sides(arena, domain), families.len() == 1, Ok(Ok(found))),
+        (None, Ok(Ok(found))) => (Vec::new(), is_all(&found.0), Ok(Ok(found))),
+        (None, searched) => (Vec::new(), false, searched),
+    };
+    // At an equilibrium nothing moves: a state that always moves is looked for only if no such point was found. It does
+    // not rest where a condition of the observer alone does not hold either.
+    let mut assumed = plant.assumed();
+    for (part, relation) in arena.domain_conditions(&equations, Regularity::Defined) {
+        assumed.facts.assume(part, relation);
+    }
     if !matches!(searched, Ok(Ok(_)))
-        && let Some((symbol, _)) = rates.iter().find(|(_, rate)| domain.implies(arena, **rate, Relation::NonZero))
+        && let Some((symbol, _)) = rates.iter().find(|(_, rate)| assumed.implies(arena, **rate, Relation::NonZero))
     {
         return Ok(Equilibrium::Nowhere(*symbol));
     }
     let (values, there) = match searched? {
         Ok(found) => found,
+        Err(_) if is_nowhere => return Ok(Equilibrium::Undecided(NONE_WITHIN.to_owned())),
         Err(stuck) => {
             let contradiction = arena.symbols_of(&[stuck]).is_empty();
             let reason = doubtful.unwrap_or_else(|| match contradiction {
@@ -141,16 +166,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         _ => orientation.of(shortest_oriented(arena, &orientation, value)),
     };
     let values = order.filter_map(|s| Some((s, printed(*values.get(&s)?)))).collect();
-    Ok(Equilibrium::At(OperatingPoint { values, complete, still, rank: rank(arena, domain, rates.values()) }))
-}
-
-/// All equilibria, with their values, if they have one component that is solved without a choice among roots.
-fn unique_family(plant: &Plant, domain: &Domain, equations: &[Expr]) -> Option<(Domain, BTreeMap<Symbol, Expr>)> {
-    // Values may hold unmeasured states: no group is kept out of them.
-    let order = [vec![BTreeSet::new()], plant.elimination_order()].concat();
-    let [family] = <[Domain; 1]>::try_from(domain.components(&plant.arena, equations, &order).ok()?).ok()?;
-    let values = family.manifold.values()?;
-    Some((family, values))
+    Ok(Equilibrium::At(OperatingPoint { values, sides, complete, still, rank: rank(arena, domain, rates.values()) }))
 }
 
 /// The rates of all signals but time.
@@ -164,9 +180,7 @@ fn rates_of_signals(plant: &Plant) -> BTreeMap<Symbol, Expr> {
 /// reason.
 fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> Result<Domain, String> {
     let arena = &plant.arena;
-    let there = domain
-        .restricted(arena, values)
-        .ok_or_else(|| "no equilibrium that was looked at lies within the assumptions and conditions".to_owned())?;
+    let there = domain.restricted(arena, values).ok_or_else(|| NONE_WITHIN.to_owned())?;
     match rates_of_signals(plant).iter().find(|(_, rate)| !vanishes(arena, **rate, values, &there)) {
         Some((symbol, _)) => Err(format!("the rate of `{}` was not shown to vanish", arena.name(*symbol))),
         None if plant.identities.iter().any(|identity| !vanishes(arena, identity.expr, values, &there)) => {
@@ -352,7 +366,7 @@ mod tests {
         assert_eq!(at(product), "p = 0, v = 0, w = 0");
         let alone = "x: [p]\ny: [q, r]\nu: [v]\nf_x: {p: v + p}\nf_y: {q: -q, r: p}\nphi: [p*q]";
         let (_, equilibrium) = of(alone);
-        assert!(matches!(equilibrium, Some(Equilibrium::Nowhere(_))), "{equilibrium:?}");
+        assert!(matches!(equilibrium, Some(Equilibrium::Undecided(reason)) if reason == NONE_WITHIN));
     }
 
     #[test]

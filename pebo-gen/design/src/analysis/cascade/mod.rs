@@ -191,6 +191,7 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         // An expression without a normal form may still differ at points.
         Err(obstacle) => {
             return bound(plant, domain, RateForm { rate, printed: rate, varying: None })
+                .or_else(|| free_on_cells(plant, domain, rate))
                 .unwrap_or(Component::Open(obstacle));
         }
     };
@@ -223,7 +224,21 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         };
     }
     bound(plant, domain, RateForm { rate, printed: tidied, varying: None })
+        .or_else(|| free_on_cells(plant, domain, rate))
         .unwrap_or(Component::Open(Obstacle::NoWitness))
+}
+
+/// A rate that is the same function of y and u on all cells that states distinguish, as the rate of `a + sat(a)` may be.
+fn free_on_cells(plant: &Plant, domain: &Domain, rate: Expr) -> Option<Component> {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let cells = domain.cells(arena, &[rate], |divider| arena.depends_on(divider, &hidden)).ok()?;
+    let cell = &cells.first()?.domain;
+    let branch = cell.analytic(arena, &[rate])[0];
+    let field = Field::on(arena, cell, &[branch]).ok()?;
+    let common = field.show(&field.fraction(branch).ok()?);
+    let is_free = !arena.depends_on(common, &hidden) && decide(arena, arena.sub(rate, common), domain).is_zero();
+    is_free.then(|| Component::Free(proved_shortest(arena, domain, common)))
 }
 
 /// A rate and its printed form.

@@ -1,7 +1,8 @@
 //! Combines the observations on two cells of a domain along one trajectory.
 //!
-//! In: cells, none of which identifies all unknowns, with the rows of each. Out: true if every cell has a neighbour
-//! into which trajectories pass and with which it identifies them all. With `p + s*sign(q)` a trajectory on which q
+//! In: cells, none of which identifies all unknowns, with the rows of each. Out: true if every cell has others into
+//! which trajectories pass and with which it identifies them all: a neighbour, or all cells along a signal that is an
+//! input or that an input drives. With `p + s*sign(q)` a trajectory on which q
 //! changes its sign identifies p and s; if q' = q*v there is none. Trajectories pass from one cell into another where
 //! the border function vanishes and moves the same way on both sides. The rows of both cells are taken at one such
 //! point, so that constants of the trajectory are the same in both. A border function of inputs alone changes its sign
@@ -15,9 +16,9 @@ use pebo_cas::domain::cells::{Cell, Side};
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::graph::enclosure::Point;
-use pebo_cas::linear::rank::full_rank_at;
+use pebo_cas::linear::rank::{full_rank, full_rank_at, null_vectors};
 use pebo_cas::tower::{Field, Obstacle};
-use pebo_cas::{Arena, Domain, Expr, Facts, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Facts, Relation, Symbol};
 
 use super::flow::Flow;
 
@@ -31,6 +32,8 @@ const FEW_POINTS: usize = 2;
 pub(super) struct CellRows<'a> {
     pub(super) cell: &'a Cell,
     pub(super) rows: Vec<Vec<Expr>>,
+    /// The directions that they do not observe.
+    pub(super) hidden: Vec<Vec<Expr>>,
 }
 
 /// Tests whether every cell identifies all unknowns with another into which trajectories pass.
@@ -41,7 +44,7 @@ pub(super) fn all_identified(
     cells: &[CellRows<'_>],
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
-    let mut identified = vec![false; cells.len()];
+    let mut identified = along_signals(plant, &varies, cells, unknowns)?;
     for first in 0..cells.len() {
         for second in first + 1..cells.len() {
             let Some(border) = border(cells[first].cell, cells[second].cell) else { continue };
@@ -56,6 +59,85 @@ pub(super) fn all_identified(
         }
     }
     Ok(identified.into_iter().all(|identified| identified))
+}
+
+/// Tests for each cell whether it identifies all unknowns with the others along a signal that takes all values: an
+/// input, or an output or state whose rate an input sets. The directions that they hide are constants, so that rows of
+/// several instants compare.
+fn along_signals(
+    plant: &Plant,
+    varies: &impl Fn(Expr) -> bool,
+    cells: &[CellRows<'_>],
+    unknowns: usize,
+) -> Result<Vec<bool>, Obstacle> {
+    let arena = &plant.arena;
+    let mut identified = vec![false; cells.len()];
+    let signals: BTreeSet<Symbol> =
+        cells.iter().flat_map(|cell| &cell.cell.sides).filter_map(|(divider, _)| driven(plant, *divider)).collect();
+    for signal in signals {
+        let others = |cell: &CellRows<'_>| -> BTreeSet<(Expr, bool)> {
+            let sides = cell.cell.sides.iter().filter(|(divider, _)| driven(plant, *divider) != Some(signal));
+            sides.map(|(divider, side)| (*divider, *side == Side::Positive)).collect()
+        };
+        for (index, cell) in cells.iter().enumerate() {
+            let line: Vec<&CellRows<'_>> = cells.iter().filter(|other| others(other) == others(cell)).collect();
+            let hidden = line.iter().flat_map(|cell| cell.hidden.concat());
+            if line.len() < 2 || hidden.into_iter().any(|entry| varies(entry)) || !is_connected(plant, signal, &line) {
+                continue;
+            }
+            let mut observed = Vec::new();
+            for cell in &line {
+                observed.extend(null_vectors(arena, &cell.cell.domain, &cell.hidden, unknowns)?);
+            }
+            identified[index] = full_rank(arena, &plant.assumed(), &observed, unknowns);
+        }
+    }
+    Ok(identified)
+}
+
+/// Tests whether trajectories reach each of the cells along a signal from each other one: an input takes its values at
+/// once; any other signal passes a border where the domain has points on it.
+fn is_connected(plant: &Plant, signal: Symbol, line: &[&CellRows<'_>]) -> bool {
+    if plant.u.contains(&signal) {
+        return true;
+    }
+    let meets = |one: &CellRows<'_>, other: &CellRows<'_>| {
+        let is_apart = |(divider, side): &&(Expr, Side)| {
+            other.cell.sides.iter().any(|(theirs, other)| theirs == divider && other != side)
+        };
+        let mut apart = one.cell.sides.iter().filter(is_apart);
+        let (Some((border, _)), None) = (apart.next(), apart.next()) else { return false };
+        let there = on_border(plant, &one.cell.domain, *border);
+        let other = on_border(plant, &other.cell.domain, *border);
+        [there, other].iter().all(|there| there.points(&plant.arena, &[*border]).next().is_some())
+    };
+    let mut reached = vec![false; line.len()];
+    let mut open = vec![0];
+    while let Some(index) = open.pop() {
+        if !std::mem::replace(&mut reached[index], true) {
+            open.extend((0..line.len()).filter(|&other| !reached[other] && meets(line[index], line[other])));
+        }
+    }
+    reached.into_iter().all(|reached| reached)
+}
+
+/// The only signal of a border, which is affine in it, if it is an input, or one whose rate an input sets.
+pub(super) fn driven(plant: &Plant, border: Expr) -> Option<Symbol> {
+    let arena = &plant.arena;
+    let is_constant = |symbol: &Symbol| plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
+    let [signal] = arena.symbols_of(&[border]).into_iter().filter(|s| !is_constant(s)).collect::<Vec<_>>()[..] else {
+        return None;
+    };
+    let is_affine = arena.symbols_of(&[arena.derivative(border, signal)]).iter().all(is_constant);
+    let rate = plant.rates().get(&signal).copied();
+    let facts: Vec<Expr> = plant.assumed().facts.iter().map(|(fact, _)| fact).collect();
+    let identities = plant.identities.iter().map(|identity| identity.expr);
+    let bounded = arena.symbols_of(&facts.into_iter().chain(identities).collect::<Vec<_>>());
+    // A bounded input may not be strong enough.
+    let sets = |input: &Symbol| {
+        !bounded.contains(input) && rate.is_some_and(|rate| plant.assumed().implies(arena, arena.derivative(rate, *input), Relation::NonZero))
+    };
+    (is_affine && (plant.u.contains(&signal) || plant.u.iter().any(sets))).then_some(signal)
 }
 
 /// The border function of two cells, if it is one formula alone.

@@ -8,17 +8,20 @@ use std::collections::BTreeSet;
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
-use pebo_cas::domain::cells::Cell;
+use pebo_cas::domain::cells::{Cell, Side};
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr};
+use pebo_cas::{Domain, Expr, Symbol};
 
-use super::crossing::{CellRows, all_identified};
-use super::trajectory::identifiable;
+use super::crossing::{CellRows, all_identified, driven};
+use super::trajectory::{TrajectoryProblem, identifiable};
 use crate::analysis::design::{
     BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, Trajectories, TrajectoryCondition,
     Verdict,
 };
 use crate::analysis::left_inverse::checking::at_phi;
+
+/// The share of the remaining budget for trajectories between cells, as for others.
+const SHARE_OF_WALLS: u64 = 8;
 
 /// An answer where all formulas are analytic.
 pub(super) struct AnalyticDecision {
@@ -62,8 +65,9 @@ impl Formulas {
     }
 }
 
-/// Answers on the whole domain, for parameters of every sign that the assumptions leave; an obstacle where that is
-/// open.
+/// Answers on the whole domain, for all values of the parameters that the assumptions leave; an obstacle where that is
+/// open. Parameters of some signs may have another answer than those of the file: then the signs of the file are
+/// conditions.
 pub(super) fn decide(
     plant: &Plant,
     domain: &Domain,
@@ -72,26 +76,103 @@ pub(super) fn decide(
     found: &mut Vec<Diagnostic>,
     on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
-    let arena = &plant.arena;
-    let mut reported = Vec::new();
-    let whole = on_cells(plant, domain, (cascade, regression), formulas, &mut reported, &on)?;
-    let identified =
-        |claim: &Claim<Identifiability>| claim.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
-    if identified(&whole) {
-        let cells = domain.cells(arena, &formulas.all(), |expr| !varies(plant, expr))?;
-        for cell in cells.iter().filter(|cell| !cell.sides.is_empty()) {
-            let claim = on_cells(plant, &cell.domain, (cascade, regression), formulas, &mut Vec::new(), &on)?;
-            let at_once = |claim: &Claim<Identifiability>| {
-                claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
-            };
-            if !identified(&claim) || at_once(&whole) && !at_once(&claim) {
-                found.push(depends_on_signs(plant, cell));
-                return Ok(Claim { verdict: Verdict::Undecided, result: None });
-            }
+    let on_cells = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+        on_cells(plant, domain, (cascade, regression), formulas, found, &on)
+    };
+    let regimes = regimes(plant, domain, formulas)?;
+    if let [_] = regimes.as_slice() {
+        return on_cells(domain, found);
+    }
+    let mut claims = Vec::new();
+    for regime in &regimes {
+        let mut reported = Vec::new();
+        claims.push((regime, on_cells(&regime.domain, &mut reported)?, reported));
+    }
+    let kind = |claim: &Claim<Identifiability>| claim.result.as_ref().map(|result| result.kind);
+    if claims.iter().all(|(_, claim, _)| kind(claim) == Some(Excitation::Instant))
+        || claims.iter().all(|(_, claim, _)| kind(claim) == Some(Excitation::Never))
+    {
+        let whole = on_cells(domain, found)?;
+        if kind(&whole) == kind(&claims[0].1) {
+            return Ok(whole);
         }
     }
-    found.extend(reported);
-    Ok(whole)
+    let is_identified = |claim: &Claim<Identifiability>| kind(claim).is_some_and(|kind| kind != Excitation::Never);
+    let other = claims.iter().find(|(_, claim, _)| !is_identified(claim)).map(|(regime, ..)| *regime);
+    if let Some(other) = other {
+        let is_given = |regime: &Cell| !domain.fixed.is_empty() && regime.domain.fixed == domain.fixed;
+        let own = claims.iter_mut().find(|(regime, claim, _)| is_given(regime) && is_identified(claim));
+        let Some((regime, claim, reported)) = own else {
+            found.push(depends_on_signs(plant, other));
+            return Ok(Claim { verdict: Verdict::Undecided, result: None });
+        };
+        if let Some(result) = &mut claim.result {
+            let sides = regime.distinct_sides(&plant.arena, domain).into_iter();
+            result.positive = sides.map(|(divider, side)| side.positive(&plant.arena, divider)).collect();
+        }
+        found.append(reported);
+        return Ok(claim.clone());
+    }
+    Ok(of_regimes(plant, domain, &claims))
+}
+
+/// The cells of the parameters: the signs of those of their functions that occur in the rows on a cell of the domain.
+fn regimes(plant: &Plant, domain: &Domain, formulas: &Formulas) -> Result<Vec<Cell>, Obstacle> {
+    let arena = &plant.arena;
+    let cells = domain.cells(arena, &formulas.all(), |_| true)?;
+    let mut dividers: Vec<Expr> = Vec::new();
+    for (divider, _) in cells.iter().flat_map(|cell| &cell.sides) {
+        if !varies(plant, *divider) && !dividers.contains(divider) {
+            dividers.push(*divider);
+        }
+    }
+    domain.divided_by(arena, &dividers)
+}
+
+/// The weakest answer of several signs of the parameters, with all trajectories of each.
+fn of_regimes(
+    plant: &Plant,
+    domain: &Domain,
+    claims: &[(&Cell, Claim<Identifiability>, Vec<Diagnostic>)],
+) -> Claim<Identifiability> {
+    let results = || claims.iter().filter_map(|(_, claim, _)| claim.result.as_ref());
+    let mut within = Vec::new();
+    let mut constants: Vec<Expr> = Vec::new();
+    for (regime, claim, _) in claims {
+        let Some(result) = &claim.result else { continue };
+        constants.extend(
+            result.constants.iter().filter(|constant| !constants.contains(constant)).copied().collect::<Vec<_>>(),
+        );
+        if let Some(trajectories) = &result.trajectories {
+            within.push((regime.distinct_sides(&plant.arena, domain), trajectories.blind.clone()));
+        }
+    }
+    let trajectories = || results().filter_map(|result| result.trajectories.as_ref());
+    let by_itself = match trajectories().map(|trajectories| trajectories.by_itself) {
+        all if all.clone().all(|by_itself| by_itself == Some(true)) => Some(true),
+        mut all => {
+            if all.any(|by_itself| by_itself == Some(false)) {
+                Some(false)
+            } else {
+                None
+            }
+        }
+    };
+    let trajectories = Trajectories {
+        by_itself,
+        at_rest: false,
+        blind: of_cells(plant, &within, claims.len()),
+        everywhere: false,
+        parameters: trajectories().all(|trajectories| trajectories.parameters),
+    };
+    Claim {
+        verdict: Verdict::Proved,
+        result: Some(Identifiability {
+            constants,
+            trajectories: Some(trajectories),
+            ..Identifiability::new(Excitation::Excitation)
+        }),
+    }
 }
 
 /// Tests whether an expression depends on more than the parameters.
@@ -133,17 +214,16 @@ fn not_combined(plant: &Plant, cells: &[Cell]) -> Diagnostic {
 
 /// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
 /// same.
-fn of_cells(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], cells: usize) -> Vec<BlindTrajectory> {
+fn of_cells(plant: &Plant, within: &[(Vec<(Expr, Side)>, Vec<BlindTrajectory>)], cells: usize) -> Vec<BlindTrajectory> {
     let key = |blind: &BlindTrajectory| (blind.condition(plant), blind.identifiable.clone());
     let mut found: Vec<BlindTrajectory> = Vec::new();
-    for (cell, trajectories) in within {
+    for (sides, trajectories) in within {
         for trajectory in trajectories {
-            let is_same =
-                |(_, others): &&(&Cell, Vec<BlindTrajectory>)| others.iter().any(|other| key(other) == key(trajectory));
-            let condition = if within.iter().filter(is_same).count() == cells {
+            let is_same = |others: &Vec<BlindTrajectory>| others.iter().any(|other| key(other) == key(trajectory));
+            let condition = if within.iter().filter(|(_, others)| is_same(others)).count() == cells {
                 trajectory.condition.clone()
             } else {
-                TrajectoryCondition::Within(cell.sides.clone(), Box::new(trajectory.condition.clone()))
+                trajectory.condition.clone().within(sides)
             };
             let trajectory = BlindTrajectory { condition, ..trajectory.clone() };
             if !found.iter().any(|other| key(other) == key(&trajectory)) {
@@ -152,6 +232,90 @@ fn of_cells(plant: &Plant, within: &[(&Cell, Vec<BlindTrajectory>)], cells: usiz
         }
     }
     found
+}
+
+impl TrajectoryCondition {
+    /// The condition on a cell.
+    fn within(self, sides: &[(Expr, Side)]) -> Self {
+        match self {
+            Self::Cell(own) => Self::Cell([sides, &own].concat()),
+            Self::Within(own, condition) => Self::Within([sides, &own].concat(), condition),
+            condition => Self::Within(sides.to_vec(), Box::new(condition)),
+        }
+    }
+}
+
+/// The statements on cells, where neighbours say the same as one.
+fn joined(mut blind: Vec<BlindTrajectory>) -> Vec<BlindTrajectory> {
+    let neighbours = |blind: &[BlindTrajectory]| {
+        for (second, other) in blind.iter().enumerate() {
+            for (first, one) in blind[..second].iter().enumerate() {
+                if let (TrajectoryCondition::Cell(own), TrajectoryCondition::Cell(sides)) =
+                    (&one.condition, &other.condition)
+                    && one.hidden == other.hidden
+                    && let Some(common) = without_border(own, sides)
+                {
+                    return Some((first, second, common));
+                }
+            }
+        }
+        None
+    };
+    while let Some((first, second, sides)) = neighbours(&blind) {
+        blind[first].condition = TrajectoryCondition::Cell(sides);
+        blind.remove(second);
+    }
+    blind
+}
+
+/// The common sides of two cells, if one divider alone distinguishes them.
+fn without_border(own: &[(Expr, Side)], sides: &[(Expr, Side)]) -> Option<Vec<(Expr, Side)>> {
+    let common: Vec<_> = own.iter().filter(|side| sides.contains(side)).copied().collect();
+    let is_apart = |side: &&(Expr, Side)| !common.contains(side);
+    let (one, other) = (own.iter().find(is_apart)?, sides.iter().find(is_apart)?);
+    let is_border = one.0 == other.0 && own.len() == common.len() + 1 && sides.len() == common.len() + 1;
+    (is_border && !common.is_empty()).then_some(common)
+}
+
+/// The trajectories that stay between two cells, on which not all unknowns are identifiable: undecided where no rule
+/// decides it.
+fn on_walls(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, regression): (&Cascade, &Regression),
+    cells: &[Cell],
+    (by_itself, listed): (Option<bool>, &[BlindTrajectory]),
+) -> Vec<BlindTrajectory> {
+    let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
+    let inputs: BTreeSet<Symbol> = plant.commanded().collect();
+    let rows = [
+        regression.phi_1.concat(),
+        regression.primitive_1.concat(),
+        cascade.lambda.iter().flatten().flatten().copied().collect(),
+    ]
+    .concat();
+    let mut walls: Vec<Expr> = Vec::new();
+    for (wall, _) in cells.iter().flat_map(|cell| &cell.sides) {
+        if !walls.contains(wall) {
+            walls.push(*wall);
+        }
+    }
+    let at_wall = |wall: Expr| {
+        let own = plant.arena.symbols_of(&[wall]);
+        let mut held: BTreeSet<Symbol> =
+            if by_itself == Some(true) { inputs.clone() } else { inputs.intersection(&own).copied().collect() };
+        // A signal that an input drives is constant on its wall, by the input, which the rows must not hold then.
+        if let Some(signal) = driven(plant, wall).filter(|_| !inputs.is_subset(&held))
+            && plant.arena.symbols_of(&rows).is_disjoint(&inputs)
+        {
+            held.insert(signal);
+        }
+        problem.at_zero(wall, &held, listed).map_or_else(
+            |_| vec![BlindTrajectory::undecided(TrajectoryCondition::Undecided(wall))],
+            |(decided, _)| decided,
+        )
+    };
+    plant.arena.budget().share(SHARE_OF_WALLS, || walls.into_iter().flat_map(at_wall).collect())
 }
 
 /// The decision on a domain from those on its cells.
@@ -187,7 +351,8 @@ fn on_cells(
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut within: Vec<(&Cell, Vec<BlindTrajectory>)> = Vec::new();
+    let mut within: Vec<(Vec<(Expr, Side)>, Vec<BlindTrajectory>)> = Vec::new();
+    let sides = |cell: &Cell| cell.distinct_sides(arena, domain);
     let mut observed = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
     let mut parameters = true;
@@ -206,15 +371,15 @@ fn on_cells(
                 let trajectories = decided.claim.result.as_ref().and_then(|result| result.trajectories.as_ref());
                 let also = trajectories.and_then(|trajectories| trajectories.by_itself);
                 by_itself = if [by_itself, also].contains(&Some(false)) { Some(false) } else { by_itself.and(also) };
-                within.extend(trajectories.map(|trajectories| (cell, trajectories.blind.clone())));
+                within.extend(trajectories.map(|trajectories| (sides(cell), trajectories.blind.clone())));
             }
             Some(Excitation::Never) => blind.push(BlindTrajectory {
-                condition: TrajectoryCondition::Cell(cell.sides.clone()),
+                condition: TrajectoryCondition::Cell(sides(cell)),
                 identifiable: identifiable(arena, symbols, &decided.hidden),
                 hidden: decided.hidden.clone(),
             }),
         }
-        observed.push(CellRows { cell, rows: decided.rows });
+        observed.push(CellRows { cell, rows: decided.rows, hidden: decided.hidden });
         if let Some(result) = decided.claim.result {
             parameters &= result.trajectories.is_none_or(|trajectories| trajectories.parameters);
             for constant in result.constants {
@@ -242,27 +407,34 @@ fn on_cells(
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
-    // Several cells identify the unknowns while the plant moves from one to the other.
-    let by_itself = by_itself.filter(|_| blind.len() < cells.len());
+    // Several cells identify the unknowns while the plant moves from one to the other: by an input, if no other signal
+    // distinguishes the cells.
+    let by_inputs = || {
+        let of_inputs = |expr: Expr| {
+            arena.symbols_of(&[expr]).into_iter().all(|s| plant.u.contains(&s) || !varies(arena.of_symbol(s)))
+        };
+        cells.iter().flat_map(|cell| &cell.sides).all(|(divider, _)| of_inputs(*divider))
+    };
+    let by_itself = match blind.len() == cells.len() {
+        true => by_inputs().then_some(false),
+        false => by_itself,
+    };
     blind.extend(of_cells(plant, &within, cells.len()));
-    // On the borders too a column may vanish.
-    let on_whole = whole.claim.result.and_then(|result| result.trajectories).map(|trajectories| trajectories.blind);
-    let is_undecided = |of: &BlindTrajectory| matches!(of.condition, TrajectoryCondition::Undecided(_));
-    let is_new = |of: &BlindTrajectory| blind.iter().all(|other| other.condition(plant) != of.condition(plant));
-    let others: Vec<BlindTrajectory> =
-        on_whole.into_iter().flatten().filter(|of| is_undecided(of) && is_new(of)).collect();
-    blind.extend(others);
+    let blind = joined(blind);
+    let walls = on_walls(plant, domain, (cascade, regression), &cells, (by_itself, &blind));
+    let mut blind = blind;
+    for wall in walls {
+        if blind.iter().all(|other| other.condition(plant) != wall.condition(plant)) {
+            blind.push(wall);
+        }
+    }
     let trajectories = Trajectories { by_itself, at_rest: false, blind, everywhere: false, parameters };
     Ok(Claim {
         verdict: Verdict::Proved,
         result: Some(Identifiability {
-            kind: Excitation::Excitation,
-            singular_where: Vec::new(),
-            everywhere_else: false,
             constants,
-            direction: None,
             trajectories: Some(trajectories),
-            gram: None,
+            ..Identifiability::new(Excitation::Excitation)
         }),
     })
 }

@@ -6,7 +6,7 @@
 //! Inputs, and signals without an equation, are free functions of time up to the identities: their derivatives are new
 //! symbols (Ortega et al. 2015, remark R3).
 
-mod trajectory;
+pub(in crate::analysis) mod trajectory;
 
 mod crossing;
 mod divided;
@@ -130,28 +130,18 @@ fn where_analytic(
     };
     let answer = |kind, direction, verdict| Claim {
         verdict,
-        result: Some(Identifiability {
-            kind,
-            singular_where: Vec::new(),
-            everywhere_else: false,
-            constants: Vec::new(),
-            direction,
-            trajectories: None,
-            gram: None,
-        }),
+        result: Some(Identifiability { direction, ..Identifiability::new(kind) }),
     };
     if full_rank(arena, domain, &stack, unknowns) {
         let phi_1 = without_psi(plant, &stack);
         let (zero_set, gram) =
             if by_rates { (of_rates(plant, domain, &phi_1), None) } else { excitation::of(plant, domain, &phi_1) };
         let result = Identifiability {
-            kind: Excitation::Instant,
             singular_where: zero_set.signals,
             everywhere_else: zero_set.all,
             constants: zero_set.constants,
-            direction: None,
-            trajectories: None,
             gram,
+            ..Identifiability::new(Excitation::Instant)
         };
         return Claim { verdict: Verdict::Proved, result: Some(result) }.into();
     }

@@ -4,7 +4,9 @@
 //! recovers, modulo the period for declared angles; the author's formula where there is one, else one
 //! that solves the transform (Ortega et al. 2015, Assumption 1 (i), with `n_x` components).
 
+mod cellwise;
 pub(super) mod checking;
+mod equations;
 mod overdetermined;
 mod solving;
 mod words;

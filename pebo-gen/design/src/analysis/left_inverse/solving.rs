@@ -13,7 +13,9 @@ use pebo_cas::solve::{Equation, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
+use super::cellwise::on_cells;
 use super::checking::{check, open_conditions};
+use super::equations::{equations, states};
 use super::overdetermined::by_least_squares;
 
 type StateFormulas = BTreeMap<Symbol, Vec<Expr>>;
@@ -37,6 +39,8 @@ struct StateSolver<'a> {
     least_squares: OnceCell<BTreeMap<Symbol, Expr>>,
     /// Solutions of the transform with the values of outputs, computed on first use.
     with_outputs: OnceCell<Result<StateFormulas, Obstacle>>,
+    /// Solutions on each cell of the domain, joined, computed on first use.
+    on_cells: OnceCell<BTreeMap<Symbol, Expr>>,
 }
 
 impl<'a> StateSolver<'a> {
@@ -61,7 +65,8 @@ impl<'a> StateSolver<'a> {
         for formula in as_written.values_mut().flatten() {
             *formula = frozen.restore(*formula);
         }
-        Ok(Self { plant, domain, alone, as_written, least_squares: OnceCell::new(), with_outputs: OnceCell::new() })
+        let (least_squares, with_outputs, on_cells) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Ok(Self { plant, domain, alone, as_written, least_squares, with_outputs, on_cells })
     }
 
     /// The best formula for a state that is right, and else the likeliest: a wrong one may still prove that the
@@ -75,6 +80,10 @@ impl<'a> StateSolver<'a> {
             // The value of an output comes with its noise: it is used where the transform alone is not solved.
             None => self.with_values(state)?.into_iter().find(right),
         };
+        let found = found.or_else(|| {
+            let joined = self.on_cells.get_or_init(|| on_cells(self.plant, self.domain));
+            joined.get(&state).copied()
+        });
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
         // A formula that has a value wherever the plant has ends the search.
         let is_total = found.is_some_and(|formula| open_conditions(self.plant, self.domain, formula).is_empty());
@@ -137,16 +146,6 @@ impl<'a> StateSolver<'a> {
         let open_conditions = open_conditions(self.plant, self.domain, formula).len();
         (open_conditions, root_differences(arena, formula).len(), operations(arena, formula))
     }
-}
-
-fn states(plant: &Plant) -> Vec<Symbol> {
-    plant.x.iter().map(|state| state.symbol).collect()
-}
-
-/// The transform, in these formulas, equal to z.
-fn equations(plant: &Plant, transform: Vec<Expr>) -> Vec<Equation> {
-    let values = plant.z.iter().map(|z| plant.arena.of_symbol(*z));
-    transform.into_iter().zip(values).map(|(formula, value)| Equation { formula, value }).collect()
 }
 
 /// Solves the transform with the identities; returns the functions of z and y among the solutions.

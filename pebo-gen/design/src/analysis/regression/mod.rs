@@ -273,9 +273,8 @@ fn refuse(
         let curvature = if obstacle.is_none() { nonlinear(plant, domain, rate, left_inverse) } else { None };
         let form = match left_inverse {
             Some(_) => search.in_z.get(&index).and_then(|rate| other_form(plant, domain, cascade, *rate)),
-            // The rate as a function of z is unknown: it may be linear with any function of a component that is
-            // constant.
-            None => constant_component(plant, cascade).map(OtherForm::Function),
+            // The rate as a function of z is unknown: it may be linear with functions of z as factors or as unknowns.
+            None => Some(constant_component(plant, cascade).map_or(OtherForm::Unknown, OtherForm::Function)),
         };
         if let (Some(point), Some(form)) = (&curvature, form) {
             verdict = Verdict::Undecided;

@@ -169,6 +169,8 @@ pub(super) enum OtherForm {
     Multiplied,
     /// In a function of this component, which is constant.
     Function(usize),
+    /// As a function of z, which is not known without a left inverse.
+    Unknown,
 }
 
 /// A rate that is not affine in z, but may be linear in the unknowns in another form.
@@ -189,6 +191,9 @@ pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, point:
                  polynomials of the outputs for coefficients; other factors were not tried",
             )
             .help("choose a phi in which this rate is affine, or measure another output"),
+        OtherForm::Unknown => diagnostic
+            .note("without a left inverse this rate is not known as a function of z, which may be linear in functions of theta")
+            .help("give the left inverse under `phi_left`, or choose a phi in which this rate is affine"),
         OtherForm::Function(component) => {
             let phi = arena.print(plant.phi[component].expr);
             diagnostic

@@ -1,5 +1,6 @@
 //! Verdicts that were wrong once, each on the smallest plant that showed it.
 
+mod cells;
 mod seldom;
 
 use super::{Derivation, Excitation, Outcome, Verdict};

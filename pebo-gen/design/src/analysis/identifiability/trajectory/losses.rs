@@ -68,17 +68,16 @@ impl TrajectoryProblem<'_> {
                 identifiable: Vec::new(),
                 hidden: Vec::new(),
             };
-            let symbols_there = arena.symbols_of(&[zero]);
-            if !symbols_there.is_subset(&known) {
-                let alone = symbols_there.difference(&constants).count() == 1;
-                let rate = flow.as_ref().ok().map(|flow| flow.rate(arena, zero));
-                if rate.is_some_and(|rate| self.leaves(zero, rate)) {
-                    continue;
-                }
-                if alone || rate.is_some_and(|rate| self.is_invariant(zero, rate)) {
-                    found.push(undecided());
-                } else {
-                    all = false;
+            if !arena.symbols_of(&[zero]).is_subset(&known) {
+                let is_one = || arena.symbols_of(&[zero]).difference(&constants).count() == 1;
+                let is_kept = || flow.as_ref().is_ok_and(|flow| self.is_invariant(zero, flow.rate(arena, zero)));
+                match self.at_zero(zero, &held, listed) {
+                    Ok((decided, complete)) => {
+                        all &= complete;
+                        found.extend(decided);
+                    }
+                    Err(_) if is_one() || is_kept() => found.push(undecided()),
+                    Err(_) => all = false,
                 }
                 continue;
             }
@@ -172,23 +171,6 @@ impl TrajectoryProblem<'_> {
     fn is_constant(&self, stack: &[Vec<Expr>]) -> bool {
         let constants: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
         self.plant.arena.symbols_of(&stack.concat()).is_subset(&constants)
-    }
-
-    /// Tests whether every trajectory leaves a zero at once.
-    fn leaves(&self, zero: Expr, rate: Expr) -> bool {
-        let &Self { plant, domain, .. } = self;
-        let arena = &plant.arena;
-        let there = |symbol: Symbol| {
-            let equal = BTreeMap::from([(symbol, solved(arena, zero, symbol)?)]);
-            let is_one = domain.implies(arena, arena.derivative(zero, symbol), Relation::NonZero);
-            let domain = domain.restricted(arena, &equal).filter(|_| is_one)?;
-            Some(domain.implies(arena, arena.substitute(rate, &equal), Relation::NonZero))
-        };
-        if arena.postorder(&[rate]).len() > MOST_OF_DETERMINANT {
-            return false;
-        }
-        domain.implies(arena, rate, Relation::NonZero)
-            || arena.symbols_of(&[zero]).into_iter().find_map(there).unwrap_or(false)
     }
 
     /// Tests whether a zero is invariant: the formula divides its rate.

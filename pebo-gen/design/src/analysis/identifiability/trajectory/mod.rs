@@ -12,11 +12,12 @@
 mod problem;
 
 mod coinciding;
+mod family;
 mod losses;
 pub(super) mod rest;
 #[cfg(test)]
 mod tests;
-mod words;
+pub(in crate::analysis) mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,9 +27,9 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use losses::{MOST_OF_DETERMINANT, is_listed};
-use problem::{MOST_PARTS, Observation, Restriction, TrajectoryProblem};
+use problem::{MOST_PARTS, Observation, Restriction};
 
-pub(super) use problem::identifiable;
+pub(super) use problem::{TrajectoryProblem, identifiable};
 
 /// Inputs up to which trajectories are tried one by one.
 const MOST_INPUTS: usize = 6;
@@ -87,7 +88,11 @@ pub(super) fn of(
     let parameters = all && !coincide();
     let kept = observed.filter(|_| by_itself != Some(true)).map(|observed| problem.kept(&observed.stack));
     let undecided = |zero| BlindTrajectory::undecided(TrajectoryCondition::Undecided(zero));
-    let kept: Vec<BlindTrajectory> = kept.into_iter().flatten().map(undecided).collect();
+    let decided = |zero: Expr| {
+        let found = problem.at_zero(zero, &BTreeSet::new(), &[]);
+        found.map_or_else(|_| vec![undecided(zero)], |(decided, _)| decided)
+    };
+    let kept: Vec<BlindTrajectory> = kept.into_iter().flatten().flat_map(decided).collect();
     let parts = held.as_ref().map_or(usize::MAX, |observed| arena.postorder(&observed.stack.concat()).len());
     let mut everywhere = false;
     if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {

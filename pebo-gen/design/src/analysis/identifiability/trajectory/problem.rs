@@ -13,12 +13,12 @@ use pebo_cas::{Arena, Domain, Expr, Symbol};
 pub(super) const MOST_PARTS: usize = 600;
 
 /// An observability problem on trajectories of a plant.
-pub(super) struct TrajectoryProblem<'a> {
-    pub(super) plant: &'a Plant,
-    pub(super) domain: &'a Domain,
-    pub(super) cascade: &'a Cascade,
-    pub(super) regression: &'a Regression,
-    pub(super) unknowns: usize,
+pub(in crate::analysis::identifiability) struct TrajectoryProblem<'a> {
+    pub(in crate::analysis::identifiability) plant: &'a Plant,
+    pub(in crate::analysis::identifiability) domain: &'a Domain,
+    pub(in crate::analysis::identifiability) cascade: &'a Cascade,
+    pub(in crate::analysis::identifiability) regression: &'a Regression,
+    pub(in crate::analysis::identifiability) unknowns: usize,
 }
 
 /// The conditions of a trajectory at all times.

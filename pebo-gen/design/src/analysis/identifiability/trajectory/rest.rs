@@ -8,13 +8,12 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
-use crate::analysis::identifiability::divided::varies;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::Side;
-use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
+use super::family::Family;
 use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
 
 /// The share of the remaining budget for equilibria, as for other trajectories.
@@ -28,9 +27,21 @@ pub(in crate::analysis::identifiability) fn add(
     cascade: &Cascade,
     regression: &Regression,
 ) {
-    if trajectories.by_itself != Some(true) {
-        return;
-    }
+    // With constant inputs as much is hidden as at an equilibrium, or less.
+    let constant = |blind: &BlindTrajectory| {
+        let condition = match &blind.condition {
+            TrajectoryCondition::Within(_, condition) => condition.as_ref(),
+            _ => &blind.condition,
+        };
+        let is_of_all =
+            matches!(condition, TrajectoryCondition::Constant(inputs) if inputs.len() == plant.commanded().count());
+        is_of_all.then_some(blind.hidden.len())
+    };
+    let hidden_anyway = match trajectories.by_itself {
+        Some(true) => 0,
+        Some(false) => trajectories.blind.iter().filter_map(constant).min().unwrap_or(0),
+        None => return,
+    };
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let held = problem.signals_at_rest();
     // Remarks on equilibria do not use up the budget of the other claims.
@@ -38,7 +49,7 @@ pub(in crate::analysis::identifiability) fn add(
         Ok(families) => problem.joined(&families, &trajectories.blind, &held),
         Err(_) => problem.at_constant_signals(&held),
     });
-    trajectories.at_rest = rest.identified;
+    trajectories.at_rest = rest.identified && trajectories.by_itself == Some(true);
     trajectories.everywhere &= rest.all || !rest.identified;
     let of_undecided = |blind: &BlindTrajectory| match blind.condition {
         TrajectoryCondition::Undecided(zero) | TrajectoryCondition::UndecidedAtRest(zero) => Some(zero),
@@ -46,10 +57,15 @@ pub(in crate::analysis::identifiability) fn add(
     };
     let known: Vec<Expr> = trajectories.blind.iter().filter_map(of_undecided).collect();
     // What holds throughout a cell holds at its equilibria.
-    let cells: Vec<_> = trajectories.blind.iter().filter_map(cell_of).cloned().collect();
+    let cells: Vec<_> =
+        trajectories.blind.iter().filter_map(|blind| Some((cell_of(blind)?.clone(), blind.hidden.len()))).collect();
+    let is_known = |sides: &[(Expr, Side)], blind: &BlindTrajectory| {
+        cells.iter().any(|(cell, hidden)| cell.as_slice() == sides && *hidden == blind.hidden.len())
+    };
     let is_new = |blind: &BlindTrajectory| {
         of_undecided(blind).is_none_or(|zero| !known.contains(&zero))
-            && within(blind).is_none_or(|sides| !cells.iter().any(|cell| cell.as_slice() == sides))
+            && within(blind).is_none_or(|sides| !is_known(sides, blind))
+            && (hidden_anyway == 0 || blind.hidden.len() > hidden_anyway)
     };
     let (undecided, hidden): (Vec<_>, Vec<_>) =
         rest.blind.into_iter().filter(is_new).partition(|blind| of_undecided(blind).is_some());
@@ -83,11 +99,14 @@ struct Rest {
     blind: Vec<BlindTrajectory>,
 }
 
-/// Equilibria on which the rows are analytic.
-struct Family {
-    domain: Domain,
-    condition: TrajectoryCondition,
-    observed: Observation,
+impl Rest {
+    /// Adds a statement, unless another holds it.
+    fn add(&mut self, blind: BlindTrajectory) {
+        if !self.blind.iter().any(|other| other.covers(&blind)) {
+            self.blind.retain(|other| !blind.covers(other));
+            self.blind.push(blind);
+        }
+    }
 }
 
 impl TrajectoryProblem<'_> {
@@ -111,50 +130,7 @@ impl TrajectoryProblem<'_> {
         if self.plant.time.is_some_and(|time| arena.symbols_of(&rates).contains(&time)) {
             return Err(Obstacle::NoPoint);
         }
-        self.families_of(self.domain, &rates, held)
-    }
-
-    /// The points of a domain at which the equations hold too, by components and cells.
-    fn families_of(
-        &self,
-        domain: &Domain,
-        equations: &[Expr],
-        held: &BTreeSet<Symbol>,
-    ) -> Result<Vec<Family>, Obstacle> {
-        let arena = &self.plant.arena;
-        let (whole, order) = (domain, self.plant.elimination_order());
-        let components = domain.components(arena, equations, &order)?;
-        // What distinguishes a component is not what holds on all of them.
-        let reduced: Vec<Vec<Expr>> = components.iter().map(|there| there.manifold.reduced(arena)).collect();
-        let hidden = self.plant.hidden();
-        let mut families = Vec::new();
-        for (domain, own) in components.into_iter().zip(&reduced) {
-            let is_special = |equation: &Expr| !reduced.iter().all(|other| other.contains(equation));
-            let special: Vec<Expr> = own.iter().copied().filter(is_special).collect();
-            let of_signals: Vec<Expr> =
-                special.iter().copied().filter(|equation| !arena.depends_on(*equation, &hidden)).collect();
-            // Where these leave one component, the unmeasured states follow from them.
-            let determined = [equations, &of_signals].concat();
-            let is_enough = !of_signals.is_empty()
-                && whole.components(arena, &determined, &order).is_ok_and(|components| components.len() == 1);
-            let condition = TrajectoryCondition::Equilibrium(if is_enough { of_signals } else { special });
-            if domain.points(arena, own).next().is_none() {
-                return Err(Obstacle::NoPoint);
-            }
-            let restriction = Restriction { held: held.clone(), ..Restriction::default() };
-            let observed = self.solve_on(&domain, &restriction)?;
-            let cells = domain.cells(arena, &observed.stack.concat(), |expr| varies(self.plant, expr))?;
-            if cells.len() == 1 {
-                families.push(Family { domain, condition, observed });
-                continue;
-            }
-            for cell in cells {
-                let condition = TrajectoryCondition::Within(cell.sides, Box::new(condition.clone()));
-                let observed = self.solve_on(&cell.domain, &restriction)?;
-                families.push(Family { domain: cell.domain, condition, observed });
-            }
-        }
-        Ok(families)
+        self.families_of(self.domain, &rates, held, |_, special| TrajectoryCondition::Equilibrium(special))
     }
 
     /// The answer of all families. Where they differ, those in a listed trajectory are exceptions that are known.
@@ -181,7 +157,7 @@ impl TrajectoryProblem<'_> {
             }
             if is_hidden(family) {
                 rest.identified &= cover.is_some();
-                rest.blind.push(self.blind(family.condition.clone(), &family.observed));
+                rest.add(self.blind(family.condition.clone(), &family.observed));
                 continue;
             }
             let (zeros, all) = self.doubtful_at_rest(&family.domain, &family.observed.stack);
@@ -201,7 +177,9 @@ impl TrajectoryProblem<'_> {
         listed: &[BlindTrajectory],
         held: &BTreeSet<Symbol>,
     ) {
-        let Ok(families) = self.families_of(&family.domain, &[zero], held) else {
+        let Ok(families) =
+            self.families_of(&family.domain, &[zero], held, |_, special| TrajectoryCondition::Equilibrium(special))
+        else {
             rest.blind.push(BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero)));
             return;
         };
@@ -213,14 +191,11 @@ impl TrajectoryProblem<'_> {
                 continue;
             }
             let condition = family.condition.clone().and(&there.condition).and(&at_zero);
-            let blind = self.blind(condition, &there.observed);
-            if !rest.blind.iter().any(|other| other.holds_at(&blind)) {
-                rest.blind.push(blind);
-            }
+            rest.add(self.blind(condition, &there.observed));
         }
     }
 
-    fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
+    pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
         let identifiable = identifiable(&self.plant.arena, symbols, &observed.hidden);
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
@@ -228,17 +203,9 @@ impl TrajectoryProblem<'_> {
 
     /// A listed trajectory that holds all of a family and hides as many directions, or is undecided.
     fn cover<'a>(&self, listed: &'a [BlindTrajectory], family: &Family) -> Option<&'a BlindTrajectory> {
-        let arena = &self.plant.arena;
         listed.iter().find(|blind| {
-            let zero = match blind.condition {
-                TrajectoryCondition::Value(symbol, value) | TrajectoryCondition::Steady(symbol, value) => {
-                    arena.sub(arena.of_symbol(symbol), value)
-                }
-                TrajectoryCondition::Undecided(zero) => zero,
-                _ => return false,
-            };
             let says_as_much = blind.hidden.is_empty() || blind.hidden.len() == family.observed.hidden.len();
-            says_as_much && !family.observed.hidden.is_empty() && decide(arena, zero, &family.domain).is_zero()
+            says_as_much && !family.observed.hidden.is_empty() && self.holds_in(blind, family)
         })
     }
 
@@ -269,18 +236,6 @@ impl TrajectoryCondition {
             (Self::Within(sides, condition), other) => Self::Within(sides, Box::new(condition.and(other))),
             (condition, Self::Within(sides, other)) => Self::Within(sides.clone(), Box::new(condition.and(other))),
             (condition, _) => condition,
-        }
-    }
-}
-
-impl BlindTrajectory {
-    /// Tests whether it is a statement on more equilibria that says as much as another.
-    fn holds_at(&self, other: &Self) -> bool {
-        match (&self.condition, &other.condition) {
-            (TrajectoryCondition::Equilibrium(own), TrajectoryCondition::Equilibrium(zeros)) => {
-                self.hidden.len() == other.hidden.len() && own.iter().all(|zero| zeros.contains(zero))
-            }
-            _ => false,
         }
     }
 }

@@ -121,6 +121,9 @@ impl TrajectoryCondition {
                 };
                 format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
             }
+            TrajectoryCondition::Zero(zeros) => {
+                zeros.iter().map(|zero| format!("`{} = 0`", arena.print(*zero))).collect::<Vec<_>>().join(" and ")
+            }
             TrajectoryCondition::Undecided(zero) => format!("`{} = 0`", arena.print(*zero)),
             TrajectoryCondition::UndecidedAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
             TrajectoryCondition::Cell(sides) => on_sides(plant, sides),
@@ -140,7 +143,8 @@ impl TrajectoryCondition {
     }
 }
 
-fn on_sides(plant: &Plant, sides: &[(Expr, Side)]) -> String {
+/// Signs, with formulas as code.
+pub fn on_sides(plant: &Plant, sides: &[(Expr, Side)]) -> String {
     let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", plant.arena.print(*expr), side.sign());
     sides.iter().map(side).collect::<Vec<_>>().join(" and ")
 }
