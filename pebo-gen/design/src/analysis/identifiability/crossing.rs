@@ -135,7 +135,9 @@ pub(super) fn driven(plant: &Plant, border: Expr) -> Option<Symbol> {
     let bounded = arena.symbols_of(&facts.into_iter().chain(identities).collect::<Vec<_>>());
     // A bounded input may not be strong enough.
     let sets = |input: &Symbol| {
-        !bounded.contains(input) && rate.is_some_and(|rate| plant.assumed().implies(arena, arena.derivative(rate, *input), Relation::NonZero))
+        !bounded.contains(input)
+            && rate
+                .is_some_and(|rate| plant.assumed().implies(arena, arena.derivative(rate, *input), Relation::NonZero))
     };
     (is_affine && (plant.u.contains(&signal) || plant.u.iter().any(sets))).then_some(signal)
 }
