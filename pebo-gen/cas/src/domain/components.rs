@@ -75,7 +75,7 @@ impl OpenCell {
             manifold: manifold(&[self.equations.as_slice(), &self.walls].concat()),
             ..self.cell.domain.clone()
         };
-        if self.cell.sides.iter().any(|side| there.excludes(arena, side)) {
+        if self.cell.sides.iter().any(|side| there.excludes(arena, *side)) {
             return Ok(Finer::Cells(Vec::new()));
         }
         // An equation that is solved for a symbol has one branch, however many its value has.
@@ -90,10 +90,10 @@ impl OpenCell {
         let determined = there.manifold.determined();
         let dividers = arena.dividers(&analytic).into_iter().map(|divider| arena.substitute(divider, &determined));
         if let Some(divider) = dividers.into_iter().find(|divider| !there.has_sign(arena, *divider)) {
-            return match self.walls.contains(&divider) {
-                true => Err(Obstacle::Unsolved(arena.print(divider))),
-                false => Ok(Finer::Cells(self.divided(arena, divider, varies(divider)))),
-            };
+            if self.walls.contains(&divider) {
+                return Err(Obstacle::Unsolved(arena.print(divider)));
+            }
+            return Ok(Finer::Cells(self.divided(arena, divider, varies(divider))));
         }
         let reduced = there.manifold.reduced(arena);
         for (index, equation) in reduced.iter().enumerate() {
@@ -130,8 +130,8 @@ impl OpenCell {
 
 impl Domain {
     /// True if no point has this side.
-    fn excludes(&self, arena: &Arena, (divider, side): &(Expr, Side)) -> bool {
-        self.implies(arena, arena.neg(side.positive(arena, *divider)), Relation::NonNegative)
+    fn excludes(&self, arena: &Arena, (divider, side): (Expr, Side)) -> bool {
+        self.implies(arena, arena.neg(side.positive(arena, divider)), Relation::NonNegative)
     }
 
     /// True if the expression is positive, negative or zero throughout.

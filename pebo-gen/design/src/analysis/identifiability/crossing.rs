@@ -82,7 +82,7 @@ fn along_signals(
         for (index, cell) in cells.iter().enumerate() {
             let line: Vec<&CellRows<'_>> = cells.iter().filter(|other| others(other) == others(cell)).collect();
             let hidden = line.iter().flat_map(|cell| cell.hidden.concat());
-            if line.len() < 2 || hidden.into_iter().any(|entry| varies(entry)) || !is_connected(plant, signal, &line) {
+            if line.len() < 2 || hidden.into_iter().any(varies) || !is_connected(plant, signal, &line) {
                 continue;
             }
             let mut observed = Vec::new();

@@ -23,6 +23,9 @@ use crate::analysis::left_inverse::checking::at_phi;
 /// The share of the remaining budget for trajectories between cells, as for others.
 const SHARE_OF_WALLS: u64 = 8;
 
+/// Dividers with their signs.
+type Sides = Vec<(Expr, Side)>;
+
 /// An answer where all formulas are analytic.
 pub(super) struct AnalyticDecision {
     /// The verdict.
@@ -214,7 +217,7 @@ fn not_combined(plant: &Plant, cells: &[Cell]) -> Diagnostic {
 
 /// The trajectories within cells on which not all unknowns are identifiable: of all cells at once, where all have the
 /// same.
-fn of_cells(plant: &Plant, within: &[(Vec<(Expr, Side)>, Vec<BlindTrajectory>)], cells: usize) -> Vec<BlindTrajectory> {
+fn of_cells(plant: &Plant, within: &[(Sides, Vec<BlindTrajectory>)], cells: usize) -> Vec<BlindTrajectory> {
     let key = |blind: &BlindTrajectory| (blind.condition(plant), blind.identifiable.clone());
     let mut found: Vec<BlindTrajectory> = Vec::new();
     for (sides, trajectories) in within {
@@ -318,6 +321,14 @@ fn on_walls(
     plant.arena.budget().share(SHARE_OF_WALLS, || walls.into_iter().flat_map(at_wall).collect())
 }
 
+/// Tests whether inputs alone distinguish the cells: then no trajectory passes from one into another without them.
+fn are_of_inputs(plant: &Plant, cells: &[Cell]) -> bool {
+    let arena = &plant.arena;
+    let is_known = |symbol: Symbol| plant.u.contains(&symbol) || !varies(plant, arena.of_symbol(symbol));
+    let dividers = cells.iter().flat_map(|cell| &cell.sides);
+    dividers.into_iter().all(|(divider, _)| arena.symbols_of(&[*divider]).into_iter().all(is_known))
+}
+
 /// The decision on a domain from those on its cells.
 fn on_cells(
     plant: &Plant,
@@ -351,7 +362,7 @@ fn on_cells(
         return Ok(whole.claim);
     }
     let mut blind = Vec::new();
-    let mut within: Vec<(Vec<(Expr, Side)>, Vec<BlindTrajectory>)> = Vec::new();
+    let mut within: Vec<(Sides, Vec<BlindTrajectory>)> = Vec::new();
     let sides = |cell: &Cell| cell.distinct_sides(arena, domain);
     let mut observed = Vec::new();
     let mut constants: Vec<Expr> = Vec::new();
@@ -407,23 +418,11 @@ fn on_cells(
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
     }
-    // Several cells identify the unknowns while the plant moves from one to the other: by an input, if no other signal
-    // distinguishes the cells.
-    let by_inputs = || {
-        let of_inputs = |expr: Expr| {
-            arena.symbols_of(&[expr]).into_iter().all(|s| plant.u.contains(&s) || !varies(arena.of_symbol(s)))
-        };
-        cells.iter().flat_map(|cell| &cell.sides).all(|(divider, _)| of_inputs(*divider))
-    };
-    let by_itself = match blind.len() == cells.len() {
-        true => by_inputs().then_some(false),
-        false => by_itself,
-    };
+    // Several cells identify the unknowns while the plant moves from one to the other.
+    let by_itself = if blind.len() == cells.len() { are_of_inputs(plant, &cells).then_some(false) } else { by_itself };
     blind.extend(of_cells(plant, &within, cells.len()));
-    let blind = joined(blind);
-    let walls = on_walls(plant, domain, (cascade, regression), &cells, (by_itself, &blind));
-    let mut blind = blind;
-    for wall in walls {
+    let mut blind = joined(blind);
+    for wall in on_walls(plant, domain, (cascade, regression), &cells, (by_itself, &blind)) {
         if blind.iter().all(|other| other.condition(plant) != wall.condition(plant)) {
             blind.push(wall);
         }

@@ -55,10 +55,8 @@ impl TrajectoryProblem<'_> {
             let branches = Manifold::new(arena, &within.facts, branches, order.clone()).reduced(arena);
             let others: Vec<Expr> = special.iter().filter(|equation| !branches.contains(equation)).copied().collect();
             let all_sides = Cell { domain: within.clone(), sides: cell.sides }.distinct_sides(arena, whole);
-            let (sides, special) = match others.len() + all_sides.len() < special.len() + sides.len() {
-                true => (all_sides, others),
-                false => (sides, special),
-            };
+            let is_shorter = others.len() + all_sides.len() < special.len() + sides.len();
+            let (sides, special) = if is_shorter { (all_sides, others) } else { (sides, special) };
             let of_signals: Vec<Expr> =
                 special.iter().copied().filter(|equation| !arena.depends_on(*equation, &hidden)).collect();
             // Where these leave one component, the unmeasured states follow from them.
@@ -68,10 +66,8 @@ impl TrajectoryProblem<'_> {
             let condition = named(own, if is_enough { of_signals } else { special });
             let determined_by: Vec<Expr> =
                 own.iter().copied().chain(sides.iter().map(|(divider, _)| *divider)).collect();
-            let condition = match sides.is_empty() {
-                true => condition,
-                false => TrajectoryCondition::Within(sides, Box::new(condition)),
-            };
+            let condition =
+                if sides.is_empty() { condition } else { TrajectoryCondition::Within(sides, Box::new(condition)) };
             let has_point = |domain: &Domain| domain.points(arena, &determined_by).next().is_some();
             let mut domain = domain;
             if !has_point(&domain) {
@@ -145,7 +141,7 @@ impl TrajectoryProblem<'_> {
         let mut found = Vec::new();
         for _ in 0..=plant.x.len() + plant.y.len() {
             for (domain, equations) in std::mem::take(&mut open) {
-                for family in self.families_of(&domain, &equations, held, &named)? {
+                for family in self.families_of(&domain, &equations, held, named)? {
                     let there = &family.domain;
                     let flow = Flow::along(plant, there, cascade, held, &BTreeMap::new())?;
                     let moves = |expr: Expr| {
