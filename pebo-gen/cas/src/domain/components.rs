@@ -1,10 +1,11 @@
 //! The components of the points of a domain at which further equations hold, cut into cells.
 //!
 //! In: a domain, equations, formulas, and the symbols that the equations are solved for. Out: cells, each with equations
-//! that no rule found to be a product, on which the equations and the formulas are analytic. Together they hold every
-//! point of the domain at which the equations hold: `a*(s - 1) = 0` is `a = 0` or `s = 1`, and `a = 0` is left out where
-//! `a > 0` is assumed; `a*|b| = a*b` is `b > 0`, `a = 0` with `b < 0`, and `b = 0`. A property
-//! proved at a point of such a cell holds almost everywhere in it.
+//! that no rule found to be a product, on which the formulas are analytic. Together they hold every point of the domain
+//! at which the equations hold: `a*(s - 1) = 0` is `a = 0` or `s = 1`, and `a = 0` is left out where `a > 0` is assumed;
+//! `a*|b| = a*b` is `b > 0`, `a = 0` with `b < 0`, and `b = 0`. An equation that is solved for a symbol is cut only if it
+//! is among the formulas too. A property of analytic formulas that is proved at a point of such a cell holds almost
+//! everywhere in it.
 
 use std::collections::BTreeSet;
 
@@ -147,6 +148,15 @@ mod tests {
     use super::*;
     use crate::{Function, Rational};
 
+    /// The equations of a cell, then its sides.
+    fn shown(arena: &Arena, there: &Cell) -> String {
+        let equations = there.domain.manifold.reduced(arena);
+        let equations = equations.iter().map(|e| arena.print(*e));
+        let sides = there.distinct_sides(arena, &Domain::default()).into_iter();
+        let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
+        equations.chain(sides).collect::<Vec<_>>().join(", ")
+    }
+
     #[test]
     fn products_of_equations_are_taken_apart() {
         let arena = Arena::new();
@@ -160,15 +170,14 @@ mod tests {
             }
             let symbols = [a, b, c].iter().filter_map(|e| arena.as_symbol(*e)).collect();
             let groups = [BTreeSet::new(), symbols, BTreeSet::new()];
-            let shown = |there: Cell| {
-                let whole = Domain::default();
-                let equations = there.domain.manifold.reduced(&arena);
-                let equations = equations.iter().map(|e| arena.print(*e));
-                let sides = there.distinct_sides(&arena, &whole).into_iter();
-                let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
-                equations.chain(sides).collect::<Vec<_>>().join(", ")
-            };
-            Some(domain.components(&arena, equations, &[], &groups).ok()?.into_iter().map(shown).collect())
+            Some(
+                domain
+                    .components(&arena, equations, &[], &groups)
+                    .ok()?
+                    .into_iter()
+                    .map(|there| shown(&arena, &there))
+                    .collect(),
+            )
         };
         let product = arena.mul(a, arena.sub(b, one));
         assert_eq!(components(&[product], &[]).unwrap(), ["a", "b - 1"]);
@@ -183,6 +192,7 @@ mod tests {
         let cubic = arena.sum([arena.mul(a, square(a)), arena.scale(a, &Rational::from(-3)), one]);
         assert_eq!(components(&[cubic], &[]), None);
     }
+
     #[test]
     fn equations_are_taken_apart_on_each_cell_and_on_its_walls() {
         let arena = Arena::new();
@@ -192,22 +202,16 @@ mod tests {
         let symbols: BTreeSet<Symbol> = [a, b].iter().filter_map(|e| arena.as_symbol(*e)).collect();
         let groups = [BTreeSet::new(), symbols, arena.symbols_of(&[c])];
         let components = |equations: &[Expr], formulas: &[Expr]| {
-            let shown = |there: Cell| {
-                let whole = Domain::default();
-                let equations = there.domain.manifold.reduced(&arena);
-                let equations = equations.iter().map(|e| arena.print(*e));
-                let sides = there.distinct_sides(&arena, &whole).into_iter();
-                let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
-                equations.chain(sides).collect::<Vec<_>>().join(", ")
-            };
             let cells = Domain::default().components(&arena, equations, formulas, &groups).unwrap();
-            cells.into_iter().map(shown).collect::<Vec<_>>()
+            cells.into_iter().map(|there| shown(&arena, &there)).collect::<Vec<_>>()
         };
         let size = |e| call(Function::Abs, &[e]);
         assert_eq!(components(&[size(a)], &[]), ["a"]);
         assert_eq!(components(&[arena.add(a, size(b))], &[]), ["a + abs(b)"]);
         let sum = arena.add(a, size(b));
         assert_eq!(components(&[sum], &[sum]), ["a + b, b > 0", "a - b, b < 0", "b, a"]);
+        let product = arena.sub(arena.mul(a, size(b)), arena.mul(a, b));
+        assert_eq!(components(&[product], &[]), ["b > 0", "a, b < 0", "b"]);
         // An equation does not imply itself.
         assert_eq!(components(&[arena.sub(a, size(a))], &[]), ["a > 0", "a"]);
         // Walls with a constant; a saturation has two.

@@ -9,8 +9,9 @@ use std::collections::BTreeMap;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::{Cell, Side};
 use pebo_cas::forms::tidy::shortest;
+use pebo_cas::number::rational::half;
 use pebo_cas::solve::solve;
-use pebo_cas::{Domain, Expr, Function, Rational, Relation, Symbol};
+use pebo_cas::{Domain, Expr, Function, Relation, Symbol};
 
 use super::checking::check;
 use super::equations::{equations, states};
@@ -61,14 +62,13 @@ fn joined(plant: &Plant, domain: &Domain, shared: usize, cells: &[(Cell, Formula
     let (above, below) = (on_side(Side::Positive)?, on_side(Side::Negative)?);
     let at = |formulas: &Formulas| arena.substitute(border, formulas);
     // Between the values of both sides, where the formula itself jumps.
-    let middle = arena.scale(arena.add(at(&above), at(&below)), &Rational::new(1, 2)?);
+    let middle = arena.scale(arena.add(at(&above), at(&below)), &half());
     let middle = shortest(arena, domain, middle);
     let formula = |state: Symbol| {
         let (above, below) = (above[&state], below[&state]);
         let by_sign = || {
             let sign = arena.call(Function::Sign, &[middle]);
-            let [share, half] = [arena.sub(above, below), arena.add(above, below)]
-                .map(|e| arena.scale(e, &Rational::new(1, 2).unwrap_or(Rational::ONE)));
+            let [share, half] = [arena.sub(above, below), arena.add(above, below)].map(|e| arena.scale(e, &half()));
             arena.add(half, arena.mul(share, sign))
         };
         let candidates =
