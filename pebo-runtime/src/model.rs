@@ -55,6 +55,9 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     type Terms: Copy + Debug;
     /// The equation that has `phi_0` and `phi_1` for its sides.
     const REGRESSION: Regression;
+    /// The number of rows of a dynamic regression that hold at every instant, `0 = phi_0 + phi_1 eta`: its last ones,
+    /// whose primitives are zero. An output that is given by its value has such a row beside the rates of others.
+    const INSTANTS: usize = 0;
 
     /// The terms of the output `y` that the functions share.
     fn terms(&self, y: &SVector<Self::Scalar, NY>) -> Self::Terms;

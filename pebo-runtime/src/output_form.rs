@@ -13,6 +13,8 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// w' = A + B z        z' = Lambda z + h        p_0(y) = w - p_1(y) z
 /// ```
 ///
+/// A row that holds at every instant, `0 = A + B z`, is one of these measurements already: it has no `w`.
+///
 /// With `p_0 = y` and `p_1 = 0`, as in most models, this is `y = y_0 + xi_y + Psi_y theta` with `y_0` among the
 /// unknowns: `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the
 /// sensors stays white, and with [`SampledRegression`](crate::SampledRegression), [`LeastSquares`](crate::LeastSquares)
@@ -20,16 +22,17 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// transformed plant. Where `A`, `B`, `Lambda` and `h` are free of the outputs it is *the* continuous-discrete Kalman
 /// filter; where they are not, the filter in which measured outputs drive the model.
 ///
-/// Sizes: `NW = NR + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`, which has
-/// this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error of that
-/// sample: its variance at the start is the sensor's.
+/// Sizes: `NW = NR - M::INSTANTS + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`,
+/// which has this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error
+/// of that sample: its variance at the start is the sensor's.
 ///
 /// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based,
 /// the Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputForm<M, const NR: usize, const NZ: usize> {
     model: M,
-    /// The index in `y` of each row's output, where estimates are made of expected outputs.
+    /// The index in `y` of each row's output, where estimates are made of expected outputs. Rows without a `w` expect
+    /// none.
     rows: Option<[usize; NR]>,
 }
 
@@ -76,9 +79,10 @@ impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
         &self,
         z: &SVector<S, NW>,
         y: &SVector<S, NY>,
+        rates: usize,
     ) -> Option<SVector<S, NY>> {
         let mut expected = *y;
-        for (row, &place) in self.rows.as_ref()?.iter().enumerate() {
+        for (row, &place) in self.rows.as_ref()?.iter().enumerate().take(rates) {
             if let Some(output) = expected.get_mut(place) {
                 *output = z[row];
             }
@@ -110,17 +114,18 @@ where
     }
 
     fn flow(&self, Measured { terms, .. }: &Self::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
-        const { assert!(NW == NR + NZ, "the unknowns are those of the outputs and those of z") };
+        const { assert!(NW + M::INSTANTS == NR + NZ, "the unknowns are those of the outputs with rates and those of z") };
         let inner = self.model.flow(terms, u);
         // At the extension's start `z = theta`: the regression is then known as a function of z.
         let rate = self.model.regression(&M::Extension::new(SVector::zeros()), terms, u);
         let plain = inner.lambda;
-        let lambda = SMatrix::from_fn(|i, j| match (i.checked_sub(NR), j.checked_sub(NR)) {
+        let rates = NW - NZ;
+        let lambda = SMatrix::from_fn(|i, j| match (i.checked_sub(rates), j.checked_sub(rates)) {
             (_, None) => nalgebra::zero(),
             (None, Some(j)) => rate.factor[(i, j)],
             (Some(i), Some(j)) => plain[(i, j)],
         });
-        let h = SVector::from_fn(|i, _| match i.checked_sub(NR) {
+        let h = SVector::from_fn(|i, _| match i.checked_sub(rates) {
             None => rate.known[i],
             Some(i) => inner.h[i],
         });
@@ -131,10 +136,19 @@ where
         &self,
         extension: &Self::Extension,
         Measured { terms, .. }: &Self::Terms,
-        _: &SVector<M::Scalar, NU>,
+        u: &SVector<M::Scalar, NU>,
     ) -> Sides<M::Scalar, NR, NW> {
-        let held = self.model.primitive(&M::Extension::new(SVector::zeros()), terms);
-        let through = SMatrix::<M::Scalar, NR, NW>::from_fn(|i, j| match j.checked_sub(NR) {
+        let rates = NW - NZ;
+        let start = M::Extension::new(SVector::zeros());
+        let mut held = self.model.primitive(&start, terms);
+        if M::INSTANTS > 0 {
+            let instant = self.model.regression(&start, terms, u);
+            for row in rates..NR {
+                held.known[row] = instant.known[row];
+                held.factor.set_row(row, &instant.factor.row(row));
+            }
+        }
+        let through = SMatrix::<M::Scalar, NR, NW>::from_fn(|i, j| match j.checked_sub(rates) {
             None if i == j => nalgebra::one(),
             None => nalgebra::zero(),
             Some(j) => -held.factor[(i, j)],
@@ -150,21 +164,21 @@ where
         // The unknown of the outputs is then the error of the first sample.
         let seen = self.regression(extension, terms, &SVector::zeros()).known;
         let mut begun = *extension;
-        begun.rebase(&SVector::from_fn(|i, _| seen.get(i).map_or_else(nalgebra::zero, |&seen| -seen)));
+        begun.rebase(&SVector::from_fn(|i, _| if i < NW - NZ { -seen[i] } else { nalgebra::zero() }));
         begun
     }
 
     fn recover(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
-        let inner = SVector::from_fn(|i, _| z[NR + i]);
-        match self.expected(z, &measured.y) {
+        let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
+        match self.expected(z, &measured.y, NW - NZ) {
             Some(expected) => self.model.recover(&inner, &self.model.terms(&expected)),
             None => self.model.recover(&inner, &measured.terms),
         }
     }
 
     fn recover_unbounded(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
-        let inner = SVector::from_fn(|i, _| z[NR + i]);
-        match self.expected(z, &measured.y) {
+        let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
+        match self.expected(z, &measured.y, NW - NZ) {
             Some(expected) => self.model.recover_unbounded(&inner, &self.model.terms(&expected)),
             None => self.model.recover_unbounded(&inner, &measured.terms),
         }

@@ -47,6 +47,7 @@ where
     type U = M::U;
     type Terms = M::Terms;
     const REGRESSION: Regression = M::REGRESSION;
+    const INSTANTS: usize = M::INSTANTS;
 
     fn terms(&self, y: &SVector<S, NY>) -> M::Terms {
         self.model.terms(y)

@@ -179,6 +179,87 @@ fn the_output_form_of_a_plant_free_of_its_outputs_is_too() -> Result<(), Fault> 
     Ok(())
 }
 
+/// `a' = -b`, `b' = 0`, of which one output has the rate `a/2 - r` and the other the value `3 a + v`.
+#[derive(Clone, Debug)]
+struct RateAndValue;
+
+impl Model<2, 2, 1, 2, 2, 2> for RateAndValue {
+    type Scalar = f64;
+    type Extension = Fundamental<f64, 2>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 2>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector2<f64>;
+    const REGRESSION: Regression = Regression::Dynamic;
+    const INSTANTS: usize = 1;
+
+    fn terms(&self, y: &Vector2<f64>) -> Vector2<f64> {
+        *y
+    }
+    fn flow(&self, _: &Vector2<f64>, _: &Vector1<f64>) -> Flow<f64, 2> {
+        Flow { lambda: Matrix2::new(0.0, -1.0, 0.0, 0.0), h: Vector2::zeros() }
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Vector2<f64>, u: &Vector1<f64>) -> Sides<f64, 2, 2> {
+        let factor = Matrix2::new(0.5, 0.0, -3.0, 0.0);
+        let known = Vector2::new(-y.x, y.y - u.x);
+        Sides { known: known + factor * extension.xi(), factor: factor * extension.psi() }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector2<f64>) -> Sides<f64, 2, 2> {
+        Sides { known: Vector2::new(y.x, 0.0), factor: Matrix2::zeros() }
+    }
+    fn theta(&self, eta: &Vector2<f64>) -> Vector2<f64> {
+        *eta
+    }
+    fn recover(&self, z: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
+        *z
+    }
+}
+
+impl Rebase<2, 2, 1, 2, 2> for RateAndValue {}
+
+#[test]
+fn a_value_beside_a_rate_is_a_measurement_of_its_own() -> Result<(), Fault> {
+    let (dt, sigma) = (1e-2, Vector2::new(1.0, 1e-4));
+    let (prior, process) = (Vector3::new(1.0, 4.0, 4.0), Vector3::new(0.0, 0.01, 0.1));
+    let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&process)?;
+    let model = OutputForm::<_, 2, 2>::new(RateAndValue);
+    let mut observer =
+        Observer::with_regression(model, squares, SampledRegression::new(&sigma)?, Vector3::zeros())?.rebasing(1)?;
+    let mut kalman = Kalman {
+        z: Vector3::zeros(),
+        p: SMatrix::from_diagonal(&prior),
+        output: SMatrix::<f64, 2, 3>::new(1.0, 0.0, 0.0, 0.0, 3.0, 0.0),
+        sensor: sigma.component_mul(&sigma),
+        process,
+    };
+    #[rustfmt::skip]
+    let whole = SMatrix::<f64, 3, 3>::new(
+        0.0, 0.5, 0.0,
+        0.0, 0.0, -1.0,
+        0.0, 0.0, 0.0,
+    );
+    let mut noise = Noise::new(7);
+    observer.step(Vector2::zeros(), Vector1::zeros(), dt)?;
+    let (mut before, mut largest) = (0.0, 0.0_f64);
+    for k in 1..=2_000_u32 {
+        let t = f64::from(k) * dt;
+        let a = 1.0 - 0.2 * t;
+        let y = Vector2::new(sigma.x * noise.normal(), 3.0 * a + t.sin() + sigma.y * noise.normal());
+        let estimate: Vector2<f64> = observer.step(y, Vector1::new(t.sin()), dt)?;
+        // The first output drives its own rate: over an interval the mean of both ends does.
+        let rate = Vector3::new(-0.5 * (before + y.x), 0.0, 0.0);
+        kalman.step(&whole, &rate, &Vector2::new(y.x, y.y - t.sin()), dt);
+        before = y.x;
+        largest = largest.max((estimate - kalman.z.yz()).abs().max());
+        // Ten deviations of the better sensor, of 3 a; the other alone has more than 0.3.
+        assert!(k < 100 || (estimate.x - a).abs() < 1e-3, "{estimate} {a}");
+    }
+    println!("largest distance {largest:e}");
+    // Rounding of numbers up to 10, weighted with 1e4.
+    assert!(largest < 1e-9, "{largest:e}");
+    Ok(())
+}
+
 /// The output form of the Cuk converter, case I, before its first sample.
 type Parted =
     Observer<OutputForm<CaseOne<f64>, 2, 2>, LeastSquares<f64, 4>, 2, 2, 1, 4, 2, 4, SampledRegression<f64, 2, 4>>;
