@@ -399,7 +399,7 @@ fn a_measured_speed_gives_its_own_row() {
     let motor = derived(&measured);
     assert_eq!(motor.derivation.outcome, Outcome::Accepted, "{:?}", motor.derivation.diagnostics);
     let regression = motor.derivation.regression.result.as_ref().expect("a regression");
-    assert_eq!((regression.kind, regression.rows.as_slice()), (RegressionKind::Dynamic, [0, 1, 2].as_slice()));
+    assert_eq!((regression.kind, regression.rows()), (RegressionKind::Dynamic, vec![0, 1, 2]));
     assert_eq!(
         printed(&motor, &regression.phi_1.concat()),
         ["0", "n_p*omega/L", "-n_p*omega/L", "0", "n_p*i2/j", "-n_p*i1/j"]
@@ -407,7 +407,7 @@ fn a_measured_speed_gives_its_own_row() {
     // As an input its rate is not known, and not needed.
     let input = MOTOR.replace("w: [omega]\n", "").replace("u: [v1, v2]", "u: [v1, v2, omega]");
     let motor = derived(&input);
-    assert_eq!(motor.derivation.regression.result.as_ref().expect("a regression").rows, [0, 1]);
+    assert_eq!(motor.derivation.regression.result.as_ref().expect("a regression").rows(), [0, 1]);
 }
 
 // Regressions with the unknown under the derivative.

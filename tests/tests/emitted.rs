@@ -222,7 +222,7 @@ fn compare(derived: &Derived, evaluate: tests::Evaluate, tolerance: f64, trial: 
 
     let cascade = derivation.cascade.result.as_ref().expect("a cascade");
     let inverse = derivation.left_inverse.result.as_ref().expect("a left inverse");
-    let outputs = regression.rows.iter().map(|row| plant.arena.of_symbol(plant.y[*row].symbol));
+    let outputs = regression.rows().into_iter().map(|row| plant.arena.of_symbol(plant.y[row].symbol));
     // Without a primitive of its own, the outputs themselves stand under the derivative.
     let primitive_0 = match regression.kind {
         RegressionKind::Dynamic => outputs.collect(),

@@ -126,7 +126,9 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
     let rows = |rows: &[Vec<Expr>]| Literal::List(rows.iter().map(|row| texts(row)).collect());
     let symbols = |symbols: &[Symbol]| Literal::texts(symbols.iter().map(|symbol| arena.name(*symbol)));
     let left = match regression.kind {
-        RegressionKind::Dynamic => symbols(&regression.rows.iter().map(|row| plant.y[*row].symbol).collect::<Vec<_>>()),
+        RegressionKind::Dynamic => {
+            symbols(&regression.rows().into_iter().map(|row| plant.y[row].symbol).collect::<Vec<_>>())
+        }
         RegressionKind::Static | RegressionKind::Implicit => Literal::None,
     };
     let kind = match identifiability.kind {

@@ -89,7 +89,7 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// Names that an emitted module declares or imports, and those of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 58] = [
+pub(super) const TYPES: [&str; 60] = [
     "Bounded",
     "Default",
     "Drem",
@@ -106,12 +106,14 @@ pub(super) const TYPES: [&str; 58] = [
     "Gate",
     "Gradient",
     "Hold",
+    "INSTANTS",
     "Integrator",
     "Kreisselmeier",
     "LeastSquares",
     "Limits",
     "Model",
     "NE",
+    "NI",
     "NO",
     "NR",
     "NU",

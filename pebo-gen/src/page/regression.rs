@@ -70,7 +70,7 @@ fn equation(
     let mut steps = Steps::default();
     match regression.kind {
         RegressionKind::Dynamic => {
-            let output = &plant.y[regression.rows[row]];
+            let output = &plant.y[regression.rows()[row]];
             let rate = setter.rate(output.symbol);
             let whole = output.rate.map(|rate| setter.expr(rate.expr)).unwrap_or_default();
             steps.add(&rate, &whole, "the plant");

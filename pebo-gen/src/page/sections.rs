@@ -93,7 +93,7 @@ fn regressed(subject: &Subject<'_>) -> Vec<Span> {
         rows.into_iter().filter_map(|row| Some(plant.y.get(row)?.rate?.span)).collect()
     };
     match &subject.derivation.regression.result {
-        Some(regression) if regression.kind == RegressionKind::Dynamic => rates(regression.rows.clone()),
+        Some(regression) if regression.kind == RegressionKind::Dynamic => rates(regression.rows()),
         Some(_) if !plant.identities.is_empty() => spans(&plant.identities),
         Some(_) => spans(&plant.phi),
         None => rates((0..plant.y.len()).collect()),

@@ -9,7 +9,7 @@ use super::{conditions, expansion, printed};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{
     BlindTrajectory, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome,
-    Regression, Witness,
+    Regression, UnusedOutput, Witness,
 };
 use pebo_design::plant::Plant;
 use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
@@ -110,6 +110,14 @@ struct RegressionReport {
     primitive_1: Vec<Vec<String>>,
     eta: Vec<String>,
     theta: Vec<String>,
+    /// The outputs that have an equation of their own, which the regression leaves out.
+    unused: Vec<UnusedReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct UnusedReport {
+    output: String,
+    reason: &'static str,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -306,6 +314,10 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> LeftInverseReport {
 fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
     let arena = &plant.arena;
     let result = claim.result.as_ref();
+    let unused = |unused: &UnusedOutput| UnusedReport {
+        output: arena.name(plant.y[unused.output].symbol),
+        reason: unused.reason.words(),
+    };
     RegressionReport {
         verdict: claim.verdict.word(),
         kind: result.map(|r| r.kind.word()),
@@ -316,6 +328,7 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
         primitive_1: result.map(|r| matrix(arena, &r.primitive_1)).unwrap_or_default(),
         eta: result.map(|r| printed(arena, &r.eta)).unwrap_or_default(),
         theta: result.map(|r| printed(arena, &r.theta)).unwrap_or_default(),
+        unused: result.iter().flat_map(|r| &r.unused).map(unused).collect(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Notes on a claim beside its formulas, a sentence each: the same in text and on a page.
 
 use pebo_design::analysis::{
-    Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, Verdict,
+    Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
 };
 use pebo_design::plant::{Plant, RelationForm};
 use pebo_design::source::{counted, listed};
@@ -39,7 +39,7 @@ pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String
     lines
 }
 
-/// Notes on the regression: the meaning of more unknowns than theta has, and its other form.
+/// Notes on the regression: the meaning of more unknowns than theta has, its other form, and outputs without use.
 pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let (unknowns, components) = (regression.eta.len(), plant.theta.len());
     let more = (unknowns > components).then(|| {
@@ -56,7 +56,10 @@ pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> 
             format!("under the derivative it is a regression in {unknowns}, with `regression: differentiated`")
         }
     });
-    more.into_iter().chain(other).collect()
+    let left_out = |unused: &UnusedOutput| {
+        format!("`{}` is left out: {}", plant.arena.name(plant.y[unused.output].symbol), unused.reason.words())
+    };
+    more.into_iter().chain(other).chain(regression.unused.iter().map(left_out)).collect()
 }
 
 /// Notes on identifiability: its proof, its exceptions, and the signals that have to move.

@@ -138,6 +138,9 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let unknowns = if linear { &plant.theta } else { &regression.eta_symbols };
     let unknown = |index: usize| -> String { arena.name(unknowns[index]) };
     let mut lines = Vec::new();
+    let is_plain = |known: Expr, factors: &[Expr]| {
+        arena.as_symbol(known).is_some() && factors.iter().all(|factor| arena.is_zero(*factor))
+    };
     for (index, (known, factors)) in regression.phi_0.iter().zip(&regression.phi_1).enumerate() {
         lines.push(match regression.kind {
             RegressionKind::Static => {
@@ -145,10 +148,13 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
             }
             RegressionKind::Dynamic | RegressionKind::Implicit => {
                 let output = match regression.primitive_0.get(index) {
-                    None => format!("{}'", arena.name(plant.y[regression.rows[index]].symbol)),
+                    None => format!("{}'", arena.name(plant.y[regression.rows()[index]].symbol)),
                     // A relation between z, y and u: nothing is under a derivative.
                     Some(known) if regression.primitive_1[index].iter().chain([known]).all(|e| arena.is_zero(*e)) => {
                         "0".to_owned()
+                    }
+                    Some(known) if is_plain(*known, &regression.primitive_1[index]) => {
+                        format!("{}'", arena.print(*known))
                     }
                     Some(known) => format!("d/dt({})", affine(arena, *known, &regression.primitive_1[index], &unknown)),
                 };

@@ -87,7 +87,7 @@ impl Case {
         // The model has no settings, by which equations without an unknown would serve a gate.
         let regression = derivation.regression.result.as_ref().expect("a regression").computed(&plant.arena, false);
         let inverse = derivation.left_inverse.result.as_ref().expect("a left inverse");
-        let outputs = regression.rows.iter().map(|row| plant.arena.of_symbol(plant.y[*row].symbol));
+        let outputs = regression.rows().into_iter().map(|row| plant.arena.of_symbol(plant.y[row].symbol));
         let primitive_0 = match regression.kind {
             RegressionKind::Dynamic => outputs.collect(),
             _ => regression.primitive_0.clone(),

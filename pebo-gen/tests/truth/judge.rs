@@ -5,7 +5,7 @@
 //! says, is a complaint.
 
 use pebo_gen::Derived;
-use pebo_gen::analysis::Outcome;
+use pebo_gen::analysis::{Outcome, Regression};
 use serde_json::Value as Json;
 
 use super::draw::Draw;
@@ -79,7 +79,7 @@ pub(crate) fn complaints(plant: &Plant, derived: &Derived, report: &Json, seed: 
     let mut draw = Draw::new(seed);
     let mut found = Vec::new();
     let mut points = 0;
-    let rows: &[usize] = derived.derivation.regression.result.as_ref().map_or(&[], |regression| &regression.rows);
+    let rows = derived.derivation.regression.result.as_ref().map_or(Vec::new(), Regression::rows);
     for _ in 0..DRAWS {
         let Some(values) = plant.point(&mut draw) else { continue };
         points += 1;
@@ -87,7 +87,7 @@ pub(crate) fn complaints(plant: &Plant, derived: &Derived, report: &Json, seed: 
             let mut at = DomainPoint::new(plant, &claims, values);
             at.cascade();
             at.left_inverse();
-            at.regression(rows, &mut draw);
+            at.regression(&rows, &mut draw);
             found.append(&mut at.found);
         }
         if points == POINTS || !found.is_empty() {

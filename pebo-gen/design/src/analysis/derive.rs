@@ -7,7 +7,10 @@ use pebo_cas::{Domain, Expr, Relation};
 
 use super::advice::remarks::Remarks;
 use super::conditions::{Conditions, DomainCondition};
-use super::design::{Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, Verdict};
+use super::design::{
+    Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, UnusedOutput, UnusedReason,
+    Verdict,
+};
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
 use super::{cascade, forms, identifiability, identities, left_inverse, permitted, regression};
@@ -215,7 +218,6 @@ fn regressed(
         _ => Claim::skipped(),
     };
     let given = forms::preferred(plant, domain, claims, (regression, identifiability), found, before);
-    let given = by_values(plant, domain, claims, given, found, before);
     let given = from_identities(plant, domain, claims, given, found);
     let mut given = without_others(plant, domain, claims, given, found, before);
     if let Some(result) = &given.0.result
@@ -225,30 +227,42 @@ fn regressed(
     {
         given = more;
     }
+    let given = with_all_outputs(plant, domain, claims, given, found, before);
     forms::static_form(plant, domain, claims, given, found, before)
 }
 
-/// The claims with outputs by their values wherever that identifies as much as their rates; else the given. Of the
-/// diagnostics, those from `before` on are of these claims.
-fn by_values(
+/// The claims with each output by the equation that says most, where the unknowns are identified no later; else the
+/// given. Of the diagnostics, those from `before` on are of these claims.
+fn with_all_outputs(
     plant: &Plant,
     domain: &Domain,
     (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
-    given: (Claim<Regression>, Claim<Identifiability>),
+    mut given: (Claim<Regression>, Claim<Identifiability>),
     found: &mut Vec<Diagnostic>,
     before: usize,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
-    let Some(rates) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
+    let Some(regression) = given.0.result.as_mut().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
     let mut said = Vec::new();
-    let Some(other) = regression::by_values(plant, domain, cascade, inverse, rates, &mut said) else { return given };
-    match forms::proved(plant, domain, (class, cascade, inverse), other, &mut said) {
-        Some(both) if !forms::at_once(&given.1) || forms::at_once(&both.1) => {
+    let mut choice = regression::with_all_outputs(plant, domain, cascade, inverse, regression, &mut said);
+    for claim in choice.regressions {
+        let mut others = said.clone();
+        let both = forms::proved(plant, domain, (class, cascade, inverse), claim, &mut others);
+        let both = both.filter(|both| !forms::at_once(&given.1) || forms::at_once(&both.1));
+        if let Some((mut claim, identified)) = both {
+            if let Some(result) = &mut claim.result {
+                result.unused = choice.unused;
+            }
             found.truncate(before);
-            found.extend(said);
-            both
+            found.extend(others);
+            return (claim, identified);
         }
-        _ => given,
     }
+    let unproved = |output| UnusedOutput { output, reason: UnusedReason::Unproved };
+    choice.unused.extend(choice.added.into_iter().map(unproved));
+    if let Some(result) = &mut given.0.result {
+        result.unused = choice.unused;
+    }
+    given
 }
 
 /// The claims without a rate that has no usable form: with rates affine in phi, or functions of theta; else the given.

@@ -139,8 +139,8 @@ pub enum RegressionKind {
 pub struct Regression {
     /// The left side.
     pub kind: RegressionKind,
-    /// Positions in the plant's outputs of the rows, for a dynamic regression.
-    pub rows: Vec<usize>,
+    /// For each row, the positions in the plant's outputs of those whose equation it is: of a relation, all in it.
+    pub sources: Vec<Vec<usize>>,
     /// `Phi_0` by rows, in chi1.. (xi1.. and Psi11.. for the generalised cascade), y and u.
     pub phi_0: Vec<Expr>,
     /// `Phi_1` by rows, an entry for each eta.
@@ -159,6 +159,28 @@ pub struct Regression {
     pub steps: Vec<(Symbol, Expr)>,
     /// The other form of the relation that the regression is made of, if it has one.
     pub alternative: Option<Alternative>,
+    /// The outputs that have an equation of their own, which the regression leaves out.
+    pub unused: Vec<UnusedOutput>,
+}
+
+/// An output whose equation is left out of the regression.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct UnusedOutput {
+    /// Its position in the plant's outputs.
+    pub output: usize,
+    /// The reason.
+    pub reason: UnusedReason,
+}
+
+/// A reason to leave an output's equation out.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum UnusedReason {
+    /// It was not found to be linear in the unknowns.
+    Nonlinear,
+    /// It holds an unmeasured signal.
+    Hidden,
+    /// With it, the claims were not proved.
+    Unproved,
 }
 
 /// An alternative form of the regression that a model may choose.
@@ -177,6 +199,29 @@ impl Regression {
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
     }
 
+    /// Positions in the plant's outputs of the rows, for a dynamic regression.
+    pub fn rows(&self) -> Vec<usize> {
+        if self.kind == RegressionKind::Dynamic { self.sources.concat() } else { Vec::new() }
+    }
+
+    /// Positions in the plant's outputs of those whose rates are rows, where nothing else is under a derivative; these
+    /// are the first rows. None for a static regression.
+    pub fn outputs_with_rates(&self, plant: &Plant) -> Option<Vec<usize>> {
+        let arena = &plant.arena;
+        let first = self.primitive_0.len() - self.instants(arena);
+        let is_known = |factors: &Vec<Expr>| factors.iter().all(|factor| arena.is_zero(*factor));
+        let place =
+            |primitive: &Expr| plant.y.iter().position(|output| arena.as_symbol(*primitive) == Some(output.symbol));
+        match self.kind {
+            RegressionKind::Static => None,
+            RegressionKind::Dynamic => Some(self.rows()),
+            RegressionKind::Implicit if self.primitive_1.iter().all(is_known) => {
+                self.primitive_0[..first].iter().map(place).collect()
+            }
+            RegressionKind::Implicit => None,
+        }
+    }
+
     /// Indices of the equations without an unknown: of known rates.
     pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
         if self.kind == RegressionKind::Static {
@@ -185,6 +230,14 @@ impl Regression {
         let nothing = |row: Option<&Vec<Expr>>| row.into_iter().flatten().all(|factor| arena.is_zero(*factor));
         let is_idle = |row: &usize| nothing(self.phi_1.get(*row)) && nothing(self.primitive_1.get(*row));
         (0..self.phi_0.len()).filter(is_idle).collect()
+    }
+
+    /// The number of equations that hold at every instant beside those of rates: the last ones, with nothing under the
+    /// derivative.
+    pub fn instants(&self, arena: &Arena) -> usize {
+        let nothing = |expr: &Expr| arena.is_zero(*expr);
+        let sides = self.primitive_0.iter().zip(&self.primitive_1).rev();
+        sides.take_while(|(known, factor)| nothing(known) && factor.iter().all(nothing)).count()
     }
 
     /// The equations that an observer runs: all of them where each `serves`, else those with an unknown. An equation
@@ -197,7 +250,7 @@ impl Regression {
         if idle.is_empty() {
             return computed;
         }
-        retain(&mut computed.rows, &idle);
+        retain(&mut computed.sources, &idle);
         retain(&mut computed.phi_0, &idle);
         retain(&mut computed.phi_1, &idle);
         retain(&mut computed.primitive_0, &idle);

@@ -46,8 +46,8 @@ pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 pub use advice::remarks::Remarks;
 pub use design::{
     BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability,
-    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition, Verdict,
-    Witness,
+    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition,
+    UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;
 pub use parameters::Sign;

@@ -7,7 +7,7 @@
 use crate::plant::Plant;
 
 use super::advice::equilibrium::Equilibrium;
-use super::design::{Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, Verdict};
+use super::design::{Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, UnusedReason, Verdict};
 
 impl Verdict {
     /// The verdict in a word.
@@ -45,6 +45,17 @@ impl Origin {
         match self {
             Self::Given => "given",
             Self::Derived => "derived",
+        }
+    }
+}
+
+impl UnusedReason {
+    /// The reason in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Nonlinear => "its equation was not found to be linear in the unknowns",
+            Self::Hidden => "an unmeasured signal is in its equation",
+            Self::Unproved => "with its equation the claims were not proved",
         }
     }
 }

@@ -30,6 +30,8 @@ pub(crate) struct Design {
     pub(crate) coordinates: usize,
     /// The number of equations of the regression.
     pub(crate) equations: usize,
+    /// The number of them that hold at every instant beside those of rates: the last ones.
+    pub(crate) instants: usize,
     /// True for a generalised cascade.
     pub(crate) is_generalised: bool,
     /// From y, u to h, then Lambda by rows in a generalised cascade.
@@ -82,12 +84,20 @@ impl Design {
         let lambda = cascade.lambda.as_ref().map(|rows| rows.concat()).unwrap_or_default();
         let at_sample: [&[Symbol]; 2] = [&y, &plant.u];
         let regressed: [&[Symbol]; 3] = [&extension, &y, &plant.u];
-        // The unknowns of the output form are the outputs under the derivative at the start, then those of z.
-        let outputs = regression.rows.iter().map(|row| format!("{}(0)", arena.name(plant.y[*row].symbol)));
-        let starts: Vec<String> = if settings.output { outputs.collect() } else { Vec::new() };
+        // The unknowns of the output form are the primitives at the start, as a rule outputs, then those of z.
+        let instants = regression.instants(arena);
+        let primitives = match regression.kind {
+            RegressionKind::Dynamic => {
+                regression.rows().into_iter().map(|row| arena.of_symbol(plant.y[row].symbol)).collect()
+            }
+            RegressionKind::Implicit => regression.primitive_0[..regression.primitive_0.len() - instants].to_vec(),
+            RegressionKind::Static => Vec::new(),
+        };
+        let starts = primitives.into_iter().filter(|_| settings.output);
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
         let design = Self {
             equations: regression.phi_0.len(),
+            instants,
             is_generalised: cascade.lambda.is_some(),
             cascade: compile(&at_sample, &[cascade.h.as_slice(), &lambda].concat())?,
             regression: compile(&regressed, &sides(&regression.phi_0, &regression.phi_1))?,
@@ -101,13 +111,16 @@ impl Design {
             phi_left: compile(&[&plant.z, &y], &states)?,
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
             is_static: regression.kind == RegressionKind::Static,
-            rows: regression.rows.clone(),
+            rows: regression.rows(),
             outputs: plant.y.len(),
             inputs: plant.u.len(),
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
             unknown_names: starts
-                .into_iter()
+                .map(|primitive| match arena.as_symbol(primitive) {
+                    Some(output) => format!("{}(0)", arena.name(output)),
+                    None => format!("({})(0)", arena.print(primitive)),
+                })
                 .chain(regression.eta.iter().map(|unknown| arena.print(*unknown)))
                 .collect(),
             settings,
@@ -122,6 +135,11 @@ impl Design {
         let regression = self.equations.max(self.unknowns);
         let plant = self.outputs.max(self.inputs).max(self.coordinates);
         plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
+    }
+
+    /// The number of equations of rates.
+    pub(crate) fn rates(&self) -> usize {
+        self.equations - self.instants
     }
 
     /// The number of unknowns that are estimated.

@@ -143,7 +143,7 @@ struct Derived<X, K, const N: usize> {
     primitive: Option<RefCell<Interpreter>>,
     theta: RefCell<Interpreter>,
     phi_left: RefCell<Interpreter>,
-    /// In the output form: the rows of the regression, and the model's own extension, which its functions read at its
+    /// In the output form: the rows of the regression with a rate, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
     output: Option<(usize, X)>,
     /// In the output form: the indices of the outputs whose expected values estimates are made of.
@@ -156,7 +156,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         let nz = design.coordinates;
         Self {
             expected: design.settings.expected.clone(),
-            output: design.settings.output.then(|| (design.equations, X::new(SVector::zeros()))),
+            output: design.settings.output.then(|| (design.rates(), X::new(SVector::zeros()))),
             known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
             nz: design.coordinates,
@@ -261,10 +261,15 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
-        let held = self.primitive(extension, y);
+        let mut held = self.primitive(extension, y);
+        let instant = self.sides(extension, y, u);
+        for row in rows..self.nr {
+            held.known[row] = instant.known[row];
+            held.factor.set_row(row, &instant.factor.row(row));
+        }
         let mut through = SMatrix::<f64, N, N>::zeros();
-        for i in 0..rows {
-            through[(i, i)] = 1.0;
+        for i in 0..self.nr {
+            through[(i, i)] = if i < rows { 1.0 } else { 0.0 };
             for j in 0..self.nz {
                 through[(i, rows + j)] = -held.factor[(i, j)];
             }
@@ -296,17 +301,18 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
             return *extension;
         }
         let known = self.regression(extension, y, &SVector::zeros()).known;
+        let rates = self.output.as_ref().map_or(0, |(rates, _)| *rates);
         let mut begun = *extension;
-        begun.rebase(&-known);
+        begun.rebase(&SVector::from_fn(|row, _| if row < rates { -known[row] } else { 0.0 }));
         begun
     }
 
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         let mut y = *y;
-        for (row, place) in self.expected.iter().flatten().enumerate() {
+        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
+        for (row, place) in self.expected.iter().flatten().take(first).enumerate() {
             y[*place] = z[row];
         }
-        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
         let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
         column(&mut self.phi_left.borrow_mut().evaluate(of), N)
     }
@@ -424,7 +430,7 @@ fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
         weights: weights.clone(),
         start: start.clone(),
         drift: noise.drift.clone(),
-        rows: if settings.output { design.equations } else { 0 },
+        rows: if settings.output { design.rates() } else { 0 },
         measured: if whole { design.rows.clone() } else { Vec::new() },
     })
 }

@@ -75,13 +75,16 @@ pub(super) fn derive(
     let mut chi_0 = start;
     let (operator, covariance, noise) = match kind {
         ObserverKind::Output => {
-            let of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
-            drift.splice(0..0, of_rows.iter().copied());
-            let of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            // An equation of an instant has no unknown of its own.
+            let rates = rows.len() - formulas.instants;
+            let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
+            drift.splice(0..0, of_rows[..rates].iter().copied());
+            of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            of_rows.truncate(rates);
             // The outputs begin at the first sample.
-            let start = rows.iter().map(|deviation| deviation.powi(2));
+            let start = rows[..rates].iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
-            chi_0 = vec![Rational::from(0); rows.len()].into_iter().chain(chi_0).collect();
+            chi_0 = vec![Rational::from(0); rates].into_iter().chain(chi_0).collect();
             (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
         }
         ObserverKind::Sampled => {
@@ -205,7 +208,11 @@ fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
     let y = plant.y.iter().map(|output| output.symbol).collect();
     let depends = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
-    (depends && regression.kind == RegressionKind::Dynamic).then(|| regression.rows.clone())
+    let mut rows = regression.outputs_with_rates(plant).filter(|_| depends)?;
+    // A row of an instant expects no output of its own; its entry is that of the first in its equation.
+    let instants = regression.sources.iter().skip(rows.len());
+    rows.extend(instants.map(|outputs| outputs.first().copied().unwrap_or(0)));
+    Some(rows)
 }
 
 /// The rates through a filter. The filtered rate of white samples has the standard deviation `alpha s`, correlated over
@@ -311,7 +318,8 @@ struct Formulas {
     /// The unknowns, by theta.
     unknowns: Slopes,
     eta: Vec<Symbol>,
-    is_static: bool,
+    /// The number of rows of an instant beside those of rates: the last ones.
+    instants: usize,
 }
 
 impl Formulas {
@@ -345,9 +353,10 @@ impl Formulas {
             rows.map(row).collect()
         };
         let rates = both(&regression.phi_0, &regression.phi_1, is_static);
+        let instants = if is_static { rates.len() } else { regression.instants(arena) };
         let held: Vec<Expr> = match regression.kind {
             RegressionKind::Static => Vec::new(),
-            RegressionKind::Dynamic => regression.rows.iter().map(|row| arena.of_symbol(y[*row])).collect(),
+            RegressionKind::Dynamic => regression.rows().into_iter().map(|row| arena.of_symbol(y[row])).collect(),
             RegressionKind::Implicit => both(&regression.primitive_0, &regression.primitive_1, false),
         };
         let bent = |row: &Expr| {
@@ -360,12 +369,12 @@ impl Formulas {
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
             flow: Slopes::new(plant, &flow, &y),
-            curvatures: if is_static { rates.iter().flat_map(bent).collect() } else { Vec::new() },
+            curvatures: rates[rates.len() - instants..].iter().flat_map(bent).collect(),
             held: Slopes::new(plant, &held, &y),
             rates: Slopes::new(plant, &rates, &y),
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
             eta,
-            is_static,
+            instants,
         })
     }
 
@@ -389,8 +398,11 @@ impl Formulas {
 
     /// The standard deviation of each row's samples.
     fn deviations(&self, point: &Point, sensors: &[f64], covariance: &[f64]) -> Option<Vec<f64>> {
-        let rows = if self.is_static { &self.rates } else { &self.held };
-        let variances = rows.variances(point, sensors)?;
+        let mut variances = self.held.variances(point, sensors)?;
+        let of_rates = self.rates.variances(point, sensors)?;
+        let first = of_rates.len() - self.instants;
+        variances.truncate(first);
+        variances.extend_from_slice(&of_rates[first..]);
         let curvatures = point.values(&self.curvatures)?;
         let width = sensors.len() * self.eta.len();
         let deviation = |(row, variance): (usize, f64)| {
@@ -403,7 +415,8 @@ impl Formulas {
                 let spread = covariance.get(unknown).copied().unwrap_or(1.0);
                 (curvature * sensors[sensor]).powi(2) * spread
             };
-            let around: f64 = curvatures.iter().skip(row * width).take(width).enumerate().map(curvature).sum();
+            let own = row.checked_sub(first).map(|row| curvatures.iter().skip(row * width).take(width));
+            let around: f64 = own.into_iter().flatten().enumerate().map(curvature).sum();
             if around > 0.0 { around.sqrt() } else { 1.0 }
         };
         Some(variances.into_iter().enumerate().map(deviation).collect())

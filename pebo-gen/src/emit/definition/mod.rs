@@ -64,6 +64,9 @@ pub(super) enum Shape {
     Matrix(&'static str, &'static str),
 }
 
+/// The constant with the number of equations that hold at every instant beside those of rates.
+pub(super) const INSTANTS: &str = "NI";
+
 /// The function that a mechanical model has besides those of `Model`.
 pub(super) const VELOCITY: &str = "velocity";
 
@@ -100,6 +103,8 @@ pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 6] = [
 #[derive(Clone, Debug)]
 pub(super) struct Definitions<'a> {
     pub(super) functions: Vec<Definition>,
+    /// The number of equations that hold at every instant beside those of rates.
+    instants: usize,
     /// The equations that the module has.
     pub(super) regression: Regression,
     pub(super) left_inverse: &'a LeftInverse,
@@ -166,7 +171,7 @@ impl<'a> Definitions<'a> {
         functions.push(vector("phi_0", "NR", regression.phi_0.clone()));
         functions.push(matrix("phi_1", "NR", "NE", &regression.phi_1));
         if regression.kind == RegressionKind::Dynamic {
-            let rows = regression.rows.iter().map(|&row| y.get(row).map(|&s| arena.of_symbol(s)));
+            let rows = regression.rows().into_iter().map(|row| y.get(row).map(|&s| arena.of_symbol(s)));
             let outputs: Option<Vec<Expr>> = rows.collect();
             let outputs = outputs.ok_or(EmitError::Missing("row of the regression"))?;
             functions.push(vector("primitive_0", "NR", outputs));
@@ -189,6 +194,7 @@ impl<'a> Definitions<'a> {
         }
         Ok(Self {
             functions,
+            instants: regression.instants(arena),
             regression,
             left_inverse,
             class: derivation.class,
@@ -230,16 +236,24 @@ impl<'a> Definitions<'a> {
         self.parts(argument).into_iter().flat_map(|part| part.columns.concat()).collect()
     }
 
-    /// The constant generics of the model, in the order of the runtime's trait.
-    pub(super) fn sizes(&self) -> [Size; 6] {
-        [
+    /// Tests whether equations hold at every instant beside those of rates.
+    pub(super) fn has_instants(&self) -> bool {
+        self.instants > 0
+    }
+
+    /// The constant generics of the model, in the order of the runtime's trait, and the number of equations of an
+    /// instant where there are some beside those of rates.
+    pub(super) fn sizes(&self) -> Vec<Size> {
+        let mut sizes = vec![
             Size { name: "NX", value: self.left_inverse.x.len() },
             Size { name: "NY", value: self.y.len() },
             Size { name: "NU", value: self.u.len() },
             Size { name: "NZ", value: self.z.len() },
             Size { name: "NR", value: self.regression.phi_0.len() },
             Size { name: "NE", value: self.regression.eta_symbols.len() },
-        ]
+        ];
+        sizes.extend(self.has_instants().then_some(Size { name: INSTANTS, value: self.instants }));
+        sizes
     }
 }
 

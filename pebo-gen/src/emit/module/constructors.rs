@@ -8,6 +8,7 @@ use quote::quote;
 
 use super::parameters::decimal;
 use super::{Module, Scope, doc, permission};
+use crate::emit::definition::INSTANTS;
 use crate::emit::expression::{ident, number};
 use crate::emit::names::camel;
 use pebo_cas::Rational;
@@ -140,10 +141,14 @@ impl Module<'_> {
                 pub const ROWS: [usize; NR] = [#(#places),*];
             }
         });
+        let instants = self.definitions.has_instants().then(|| {
+            let number = ident(INSTANTS);
+            quote!(- #number)
+        });
         match &settings.operator {
             Operator::Sampled(_) if settings.output => quote! {
                 /// The unknowns of the output form: the outputs whose rates are used, and the coordinates.
-                pub const NO: usize = NR + NZ;
+                pub const NO: usize = NR #instants + NZ;
                 #rows
                 #summary
                 pub type Tuned = pebo_runtime::Observer<

@@ -8,9 +8,9 @@ use super::abbreviation::Abbreviations;
 use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
-use crate::emit::definition::{Argument, Definitions, Group, VELOCITY};
+use crate::emit::definition::{Argument, Definitions, Group, INSTANTS, VELOCITY};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
-use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind};
+use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
 use pebo_design::plant::Plant;
 use pebo_design::program::{Cost, StagedPrograms};
 
@@ -42,6 +42,7 @@ pub(in crate::emit) fn module(module: &Module<'_>) -> Vec<String> {
     lines.extend(equations(plant, abbreviations));
     lines.extend(observer(plant, definitions, abbreviations));
     lines.extend(idle(plant, derivation, definitions));
+    lines.extend(left_out(plant, definitions));
     lines.extend(fundamental(derivation, rebase));
     lines.extend(drift(plant, derivation, rebase));
     lines.extend(proofs(plant, derivation, definitions));
@@ -166,7 +167,7 @@ fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Ve
     let idle = whole.without_unknowns(arena);
     let names: Vec<String> = idle
         .iter()
-        .map(|&row| match (whole.rows.get(row), whole.primitive_0.get(row)) {
+        .map(|&row| match (whole.rows().get(row), whole.primitive_0.get(row)) {
             (Some(&output), _) => format!("`{}'`", arena.name(plant.y[output].symbol)),
             (None, Some(held)) => format!("`d/dt({})`", arena.print(*held)),
             (None, None) => format!("equation {}", row + 1),
@@ -182,6 +183,15 @@ fn idle(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Ve
         "no part of the regression"
     };
     vec![String::new(), format!("{} {verb} nothing unknown: {them} {told}.", names.join(", "))]
+}
+
+/// The outputs whose equations the regression leaves out.
+fn left_out(plant: &Plant, definitions: &Definitions) -> Vec<String> {
+    let sentence = |unused: &UnusedOutput| {
+        let name = plant.arena.name(plant.y[unused.output].symbol);
+        format!("`{name}` is left out of the regression: {}.", unused.reason.words())
+    };
+    definitions.regression.unused.iter().flat_map(|unused| [String::new(), sentence(unused)]).collect()
 }
 
 /// The fate of the fundamental matrix, with its remedy.
@@ -332,6 +342,9 @@ pub(in crate::emit) fn size(plant: &Plant, definitions: &Definitions, name: &str
         }
         "NZ" => "The number of components of the transform `z`.".to_owned(),
         "NR" => "The number of equations of the regression.".to_owned(),
+        INSTANTS => {
+            "The number of its equations that hold at every instant, without a derivative: the last ones.".to_owned()
+        }
         _ => "The number of unknowns of the regression.".to_owned(),
     }
 }

@@ -39,8 +39,8 @@ pub(super) fn equation(plant: &Plant, definitions: &Definitions) -> String {
         }
         RegressionKind::Implicit => format!("d/dt primitive_0 = phi_0 + phi_1 {unknown}"),
         RegressionKind::Dynamic => {
-            let rows = definitions.regression.rows.iter();
-            let outputs = rows.filter_map(|&row| Some(plant.y.get(row)?.symbol));
+            let rows = definitions.regression.rows().into_iter();
+            let outputs = rows.filter_map(|row| Some(plant.y.get(row)?.symbol));
             format!("{}' = phi_0 + phi_1 {unknown}", vector(arena, outputs))
         }
     }

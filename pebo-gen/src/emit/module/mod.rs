@@ -22,7 +22,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
 use super::accuracy::Accuracy;
-use super::definition::{Argument, Definitions, VELOCITY};
+use super::definition::{Argument, Definitions, INSTANTS, VELOCITY};
 use super::error::EmitError;
 use super::expression::{self, Body, Piece, ident, render};
 use super::literal::{Scalar, literal, whole};
@@ -107,6 +107,10 @@ impl Module<'_> {
         });
         let sampled = self.staged.programs.iter().chain([&self.staged.sample]);
         let precision = permission::for_numbers(self.scalar, sampled.flat_map(numbers));
+        let instants = self.definitions.has_instants().then(|| {
+            let number = ident(INSTANTS);
+            quote!(const INSTANTS: usize = #number;)
+        });
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let paper = self.paper();
         let rebase = self.rebase.then(|| {
@@ -136,6 +140,7 @@ impl Module<'_> {
                 type Extension = #extension<#scalar, NZ>;
                 type Terms = #terms_name;
                 const REGRESSION: Regression = Regression::#regression;
+                #instants
                 #(#functions)*
             }
             #own

@@ -15,7 +15,7 @@ use proc_macro2::TokenStream;
 use quote::ToTokens;
 use syn::{FnArg, ImplItem, Item};
 
-use super::definition::{Argument, Definitions, GROUPS, VELOCITY};
+use super::definition::{Argument, Definitions, GROUPS, INSTANTS, VELOCITY};
 use super::error::EmitError;
 use super::literal::Scalar;
 use super::module::check::{self, Condition};
@@ -55,6 +55,9 @@ pub(super) fn confirm(
         if read.choices.get(name).map(String::as_str) != Some(value) {
             return Err(EmitError::Unreadable { code: format!("{name} is not {value}") });
         }
+    }
+    if read.choices.get("INSTANTS").map(String::as_str) != definitions.has_instants().then_some(INSTANTS) {
+        return Err(EmitError::Unreadable { code: "the equations that hold at every instant".to_owned() });
     }
     let values: Option<Vec<Rational>> = plant.parameters.iter().map(|parameter| parameter.value.clone()).collect();
     if !plant.parameters.is_empty() && read.default != values {
@@ -169,8 +172,8 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
             Item::Const(item) if item.ident == "_" => {}
             Item::Const(item) if item.ident == settings::WINDOW => window = Some(&*item.expr),
             Item::Const(item) if item.ident == settings::ROWS => rows = Some(&*item.expr),
-            Item::Const(item) if item.ident == settings::UNKNOWNS.0 => {
-                if item.expr.to_token_stream().to_string() != settings::UNKNOWNS.1 {
+            Item::Const(item) if item.ident == settings::UNKNOWNS => {
+                if item.expr.to_token_stream().to_string() != settings::unknowns(definitions.has_instants()) {
                     return Err(unreadable(item));
                 }
             }

@@ -17,8 +17,13 @@ use pebo_design::plant::settings::{
 /// The constant with the length of a window.
 pub(in crate::emit) const WINDOW: &str = "NW";
 
-/// The constant with the number of unknowns of the output form, and its value.
-pub(in crate::emit) const UNKNOWNS: (&str, &str) = ("NO", "NR + NZ");
+/// The constant with the number of unknowns of the output form.
+pub(in crate::emit) const UNKNOWNS: &str = "NO";
+
+/// Its value.
+pub(in crate::emit) fn unknowns(has_instants: bool) -> &'static str {
+    if has_instants { "NR - NI + NZ" } else { "NR + NZ" }
+}
 
 /// The constant with the indices of the outputs of the rows.
 pub(in crate::emit) const ROWS: &str = "ROWS";

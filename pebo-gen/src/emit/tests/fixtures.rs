@@ -157,7 +157,7 @@ impl Sketch {
             }),
             regression: proved(Regression {
                 kind: self.kind,
-                rows: (0..self.phi_0.len()).collect(),
+                sources: (0..self.phi_0.len()).map(|row| vec![row]).collect(),
                 phi_0: formulas(self.phi_0),
                 primitive_0: Vec::new(),
                 primitive_1: Vec::new(),
@@ -167,6 +167,7 @@ impl Sketch {
                 eta_symbols: eta,
                 steps: Vec::new(),
                 alternative: None,
+                unused: Vec::new(),
             }),
             identifiability: proved(Identifiability {
                 kind: Excitation::Instant,

@@ -371,7 +371,7 @@ fn an_equation_without_an_unknown_is_left_out() {
     let (plant, derivation) = known.build();
     let whole = derivation.regression.result.as_ref().unwrap();
     assert_eq!(whole.without_unknowns(&plant.arena), [1]);
-    assert_eq!(whole.computed(&plant.arena, true).rows, [0, 1]);
-    assert_eq!(whole.computed(&plant.arena, false).rows, [0]);
+    assert_eq!(whole.computed(&plant.arena, true).rows(), [0, 1]);
+    assert_eq!(whole.computed(&plant.arena, false).rows(), [0]);
     assert_eq!(emitted(CUK).matches("nothing unknown").count(), 0);
 }

@@ -21,8 +21,8 @@ pub(super) struct Combination {
     pub(super) output: Expr,
     /// Its rate.
     pub(super) rate: Expr,
-    /// The first output in it.
-    pub(super) first: usize,
+    /// Positions of the outputs in it.
+    pub(super) outputs: Vec<usize>,
 }
 
 /// The outputs with a rate, but for some.
@@ -42,6 +42,9 @@ fn found(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Result<Vec<Combin
     let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let rates = rates(plant, outputs);
+    let part_of = |factors: &[Expr]| -> Vec<usize> {
+        outputs.iter().zip(factors).filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| *output).collect()
+    };
     let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
     let field = Field::over(arena, &domain.facts, &rates)?;
     let mut found = Vec::new();
@@ -55,8 +58,7 @@ fn found(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Result<Vec<Combin
             let whole = dot(arena, &scaled, &rates);
             let rate = shortest(arena, domain, whole);
             if !arena.depends_on(rate, &unmeasured) && decide(arena, arena.sub(whole, rate), domain).is_zero() {
-                let first = scaled.iter().position(|entry| !arena.is_zero(*entry)).map_or(0, |place| outputs[place]);
-                found.push(Combination { output: dot(arena, &scaled, &symbols), rate, first });
+                found.push(Combination { output: dot(arena, &scaled, &symbols), rate, outputs: part_of(&scaled) });
                 break;
             }
         }
@@ -74,6 +76,9 @@ pub(super) fn affine_combinations(
     let arena = &plant.arena;
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let rates = rates(plant, outputs);
+    let part_of = |factors: &[Expr]| -> Vec<usize> {
+        outputs.iter().zip(factors).filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| *output).collect()
+    };
     let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
     // The rates come last, so that each relation has one rate of its own, and of the others only their terms that are
     // not affine.
@@ -89,9 +94,8 @@ pub(super) fn affine_combinations(
             moving = true;
             continue;
         }
-        let first = scaled.iter().position(|entry| !arena.is_zero(*entry)).map_or(0, |place| outputs[place]);
         let rate = shortest(arena, domain, dot(arena, &scaled, &rates));
-        found.push(Combination { output: dot(arena, &scaled, &symbols), rate, first });
+        found.push(Combination { output: dot(arena, &scaled, &symbols), rate, outputs: part_of(&scaled) });
     }
     Ok((found, moving))
 }

@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::equation::{self, outputs_of};
 use super::separation;
 use crate::analysis::affine;
 use crate::analysis::design::LeftInverse;
@@ -44,7 +45,7 @@ fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::
 
 /// The identities as equations between z, y and u: in a form that is affine in z, else in one with separable terms,
 /// else as written.
-pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -> Vec<Expr> {
+pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -> Vec<equation::Equation> {
     let arena = &plant.arena;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
@@ -64,11 +65,14 @@ pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -
             }
         }
     };
-    let mut found: Vec<Expr> = Vec::new();
-    for equation in plant.identities.iter().flat_map(|identity| of(identity.expr)) {
-        // A bearing under `g_y` and the same written as an identity.
-        if !found.contains(&equation) && !found.contains(&arena.neg(equation)) {
-            found.push(equation);
+    let mut found: Vec<equation::Equation> = Vec::new();
+    for identity in &plant.identities {
+        for rate in of(identity.expr) {
+            // A bearing under `g_y` and the same written as an identity.
+            match found.iter_mut().find(|known| known.rate == rate || known.rate == arena.neg(rate)) {
+                Some(known) => known.outputs.extend(outputs_of(plant, identity)),
+                None => found.push(equation::Equation::instant(arena, rate, outputs_of(plant, identity))),
+            }
         }
     }
     found

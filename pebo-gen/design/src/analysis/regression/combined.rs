@@ -8,15 +8,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{cleared, implicit, relations, separation};
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::plant::Plant;
 use crate::plant::matrix::dot;
+use crate::plant::{Formula, Plant};
 use crate::source::Diagnostic;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::{decide, point_of};
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use super::cancelling::{Combination, combinations, moved_freely, outputs_but};
-use super::equation::Equation;
+use super::equation::{Equation, outputs_of};
 use super::functions::over_parameterised;
 use super::linear::decompose;
 
@@ -38,7 +38,7 @@ pub(in crate::analysis) fn combined(
     regression: &Regression,
     found: &mut Vec<Diagnostic>,
 ) -> CombinedRegressions {
-    let unused = outputs_but(plant, &regression.rows);
+    let unused = outputs_but(plant, &regression.rows());
     let combined = combinations(plant, domain, &unused);
     let mut complete = moved_freely(plant, domain, &unused, combined.len());
     let mut more = Vec::new();
@@ -60,7 +60,7 @@ pub(in crate::analysis) fn combined(
         return CombinedRegressions { regressions: Vec::new(), complete };
     }
     let mut regressions = Vec::new();
-    if let Some(base) = of_regression(plant, cascade, regression) {
+    if let Some(base) = of_regression(plant, domain, cascade, regression) {
         let (linear, curved): (Vec<Equation>, Vec<Equation>) =
             more.into_iter().partition(|equation| affine(plant, domain, equation.rate).is_some());
         let mut equations = base;
@@ -105,11 +105,15 @@ fn in_z(
 ) -> Option<Equation> {
     let arena = &plant.arena;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
-    let rate = match decompose(plant, domain, left_inverse, (combination.first, combination.rate)) {
+    let rate = match decompose(plant, domain, left_inverse, (*combination.outputs.first()?, combination.rate)) {
         Ok(Some(row)) => arena.add(row.known, dot(arena, &row.factors, &z)),
         _ => arena.substitute(combination.rate, &left_inverse?.x.iter().copied().collect()),
     };
-    (!arena.depends_on(rate, &plant.hidden())).then_some(Equation { primitive: combination.output, rate })
+    (!arena.depends_on(rate, &plant.hidden())).then(|| Equation {
+        primitive: combination.output,
+        rate,
+        outputs: combination.outputs.clone(),
+    })
 }
 
 /// The relations at every instant: of the components of the transform with measured signals, and identities; and true
@@ -118,13 +122,16 @@ fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftIn
     let arena = &plant.arena;
     let identities = match left_inverse {
         Some(left_inverse) => cleared::in_z(plant, domain, left_inverse),
-        None => plant.identities.iter().map(|identity| identity.expr).collect(),
+        None => {
+            let as_written = |identity: &Formula| Equation::instant(arena, identity.expr, outputs_of(plant, identity));
+            plant.identities.iter().map(as_written).collect()
+        }
     };
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
-    let (identities, open): (Vec<Expr>, Vec<Expr>) = identities
+    let (identities, open): (Vec<Equation>, Vec<Equation>) = identities
         .into_iter()
-        .filter(|e| arena.depends_on(*e, &unknown) || arena.depends_on(*e, &plant.hidden()))
-        .partition(|e| !arena.depends_on(*e, &plant.hidden()));
+        .filter(|e| arena.depends_on(e.rate, &unknown) || arena.depends_on(e.rate, &plant.hidden()))
+        .partition(|e| !arena.depends_on(e.rate, &plant.hidden()));
     let mut complete = open.is_empty();
     let mut relations = Vec::new();
     if relations::possible(plant, domain) {
@@ -132,8 +139,8 @@ fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftIn
         complete &= relations::are_all(plant, domain, &relations);
         relations.retain(|relation| is_informative(plant, domain, *relation));
     }
-    let equations = relations.into_iter().chain(identities);
-    (equations.map(|rate| Equation { primitive: arena.zero(), rate }).collect(), complete)
+    let relations = relations.into_iter().map(|rate| Equation::relation(plant, rate));
+    (relations.chain(identities).collect(), complete)
 }
 
 /// Tests whether a relation restricts the unknowns for every choice of phi: one that is linear with constant
@@ -145,7 +152,7 @@ fn is_informative(plant: &Plant, domain: &Domain, relation: Expr) -> bool {
 }
 
 /// An expression in z as `known + factors z`, with coefficients free of z; none if it is not affine.
-fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>)> {
+pub(super) fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>)> {
     let arena = &plant.arena;
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
@@ -156,27 +163,36 @@ fn affine(plant: &Plant, domain: &Domain, rate: Expr) -> Option<(Expr, Vec<Expr>
     (free && decide(arena, arena.sub(rate, rebuilt), domain).is_zero()).then_some((known, factors))
 }
 
-/// The equations of a regression with nothing unknown under the derivative: z = chi + theta at theta = 0, with z for
-/// chi.
-pub(super) fn of_regression(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Vec<Equation>> {
+/// The equations of a regression: z = chi + theta at theta = 0, with z for chi. None if a function of theta has no value
+/// there.
+pub(super) fn of_regression(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+) -> Option<Vec<Equation>> {
     let arena = &plant.arena;
-    let held = regression.primitive_1.iter().flatten().any(|factor| !arena.is_zero(*factor));
-    let outputs: Vec<Expr> = match regression.kind {
-        RegressionKind::Dynamic => regression.rows.iter().map(|row| arena.of_symbol(plant.y[*row].symbol)).collect(),
-        RegressionKind::Implicit if !held => regression.primitive_0.clone(),
-        RegressionKind::Implicit | RegressionKind::Static => return None,
-    };
     let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
     let z = |s: &Symbol| arena.of_symbol(*s);
     let at_z: BTreeMap<Symbol, Expr> = extension.iter().copied().zip(plant.z.iter().map(z)).collect();
     let origin: BTreeMap<Symbol, Expr> = plant.theta.iter().map(|s| (*s, arena.zero())).collect();
     let eta = arena.substitute_all(&regression.eta, &origin);
-    let rows = outputs.into_iter().zip(regression.phi_0.iter().zip(&regression.phi_1));
-    let equations = rows.map(|(primitive, (phi_0, phi_1))| Equation {
-        primitive,
-        rate: arena.substitute(arena.add(*phi_0, dot(arena, phi_1, &eta)), &at_z),
-    });
-    Some(equations.collect())
+    if eta.iter().any(|eta| point_of(arena, *eta, domain).is_none()) {
+        return None;
+    }
+    let side = |known: Expr, factor: &[Expr]| arena.substitute(arena.add(known, dot(arena, factor, &eta)), &at_z);
+    let equation = |(row, outputs): (usize, &Vec<usize>)| {
+        let (phi_0, phi_1) = (regression.phi_0[row], &regression.phi_1[row]);
+        let (primitive, rate) = match regression.kind {
+            RegressionKind::Dynamic => (arena.of_symbol(plant.y[outputs[0]].symbol), side(phi_0, phi_1)),
+            RegressionKind::Implicit => {
+                (side(regression.primitive_0[row], &regression.primitive_1[row]), side(phi_0, phi_1))
+            }
+            RegressionKind::Static => (arena.zero(), arena.neg(side(arena.neg(phi_0), phi_1))),
+        };
+        Equation { primitive, rate, outputs: outputs.clone() }
+    };
+    Some(regression.sources.iter().enumerate().map(equation).collect())
 }
 
 /// A regression with the unknowns under the derivative of outputs whose rates hold them in a denominator, beside
@@ -197,8 +213,9 @@ pub(super) fn under_derivative(
     let (mut straight, mut linear, mut others) = (Vec::new(), Vec::new(), Vec::new());
     for &(output, rate) in rates {
         if affine(plant, domain, rate).is_some() {
-            straight.push(Equation { primitive: arena.of_symbol(plant.y[output].symbol), rate });
-        } else if let Ok(Some(equation)) = implicit::affine_equation(plant, domain, output) {
+            let primitive = arena.of_symbol(plant.y[output].symbol);
+            straight.push(Equation { primitive, rate, outputs: vec![output] });
+        } else if let Ok(Some(equation)) = implicit::affine_equation(plant, domain, (output, rate)) {
             linear.push(equation);
         } else if let Ok(Some(equation)) = implicit::equation(plant, domain, cascade, (output, rate), rates) {
             others.push(equation);
@@ -214,7 +231,8 @@ pub(super) fn under_derivative(
     whole.or_else(|| if others.is_empty() { None } else { joined(linear, found) })
 }
 
-/// The regression of the equations: linear where all are affine in z, else in functions of theta.
+/// The regression of the equations: linear where all are affine in z, else in functions of theta. Relations of an instant
+/// come last; alone they are a static regression.
 pub(super) fn joined(
     plant: &Plant,
     domain: &Domain,
@@ -224,6 +242,11 @@ pub(super) fn joined(
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
     let arena = &plant.arena;
+    let (instants, rates): (Vec<&Equation>, Vec<&Equation>) =
+        equations.iter().partition(|equation| arena.is_zero(equation.primitive));
+    let is_static = rates.is_empty();
+    let equations = [rates, instants].concat();
+    let sources: Vec<Vec<usize>> = equations.iter().map(|e| e.outputs.clone()).collect();
     let primitives: Vec<Expr> = equations.iter().map(|e| e.primitive).collect();
     let rates: Vec<Expr> = equations.iter().map(|e| e.rate).collect();
     let rows = |of: &[Expr]| of.iter().map(|expr| affine(plant, domain, *expr)).collect::<Option<Vec<_>>>();
@@ -232,7 +255,7 @@ pub(super) fn joined(
             return None;
         }
         let separated = separation::separate(plant, domain, &[primitives, rates].concat()).ok()??;
-        return over_parameterised(plant, domain, left_inverse?, (Vec::new(), equations.len()), separated, found);
+        return over_parameterised(plant, domain, left_inverse?, (sources, equations.len()), separated, found);
     };
     let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
     let chi = |s: &Symbol| arena.of_symbol(*s);
@@ -244,17 +267,26 @@ pub(super) fn joined(
         (0..unknowns).map(|j| dot(arena, factors, &column(j))).collect()
     };
     let of_theta = |(_, factors): (Expr, Vec<Expr>)| if cascade.lambda.is_some() { moved(&factors) } else { factors };
+    let negated = |row: Vec<Expr>| row.into_iter().map(|e| shortest(arena, domain, arena.neg(e))).collect();
+    let factors = rows.into_iter().map(of_theta);
+    let (primitive_0, primitive_1) = if is_static {
+        (Vec::new(), Vec::new())
+    } else {
+        (arena.substitute_all(&primitives, &at_chi), held.into_iter().map(of_theta).collect())
+    };
     let result = Regression {
-        kind: RegressionKind::Implicit,
-        rows: Vec::new(),
+        kind: if is_static { RegressionKind::Static } else { RegressionKind::Implicit },
+        sources,
         phi_0: arena.substitute_all(&rates, &at_chi),
-        phi_1: rows.into_iter().map(of_theta).collect(),
-        primitive_0: arena.substitute_all(&primitives, &at_chi),
-        primitive_1: held.into_iter().map(of_theta).collect(),
+        // known + factors theta = 0, so known = -factors theta
+        phi_1: if is_static { factors.map(negated).collect() } else { factors.collect() },
+        primitive_0,
+        primitive_1,
         theta: plant.eta(unknowns).iter().map(|s| arena.of_symbol(*s)).collect(),
         eta_symbols: plant.eta(unknowns),
         steps: Vec::new(),
         alternative: None,
+        unused: Vec::new(),
         eta: theta,
     };
     Some(Claim { verdict: Verdict::Proved, result: Some(result) })

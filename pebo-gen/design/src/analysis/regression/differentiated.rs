@@ -42,7 +42,8 @@ pub(in crate::analysis) fn differentiated(
     let relations = if !plant.identities.is_empty() {
         cleared::in_z(plant, domain, left_inverse?)
     } else if relations::possible(plant, domain) {
-        relations::among(plant, domain).ok()?
+        let relations = relations::among(plant, domain).ok()?;
+        relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect()
     } else {
         return None;
     };
@@ -86,8 +87,9 @@ fn proved(claim: &Claim<Regression>) -> Option<&Regression> {
 }
 
 /// The equation that a relation becomes; none where squares have coefficients that move, or nothing moves at all.
-fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation: Expr) -> Option<Equation> {
+fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation: Equation) -> Option<Equation> {
     let arena = &plant.arena;
+    let Equation { rate: relation, outputs, .. } = relation;
     let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
     let known: BTreeSet<Symbol> =
@@ -120,7 +122,7 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
     let rate = shortest(arena, domain, arena.sub(rate, arena.mul(multiple, relation)));
     let moves = !arena.is_zero(primitive) || !arena.is_zero(rate);
     // The rate of an input is not known.
-    (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate })
+    (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate, outputs })
 }
 
 /// An expression less its value at z = 0 and y = 0, if it has a value there without an input: a constant has no rate.

@@ -12,12 +12,12 @@ use pebo_cas::forms::tidy::shortest;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 /// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
-/// output, an implicit one with so many rows of primitives before these.
+/// output, an implicit one with so many rows of primitives before these; with the outputs of each row.
 pub(super) fn over_parameterised(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
-    (rows, held): (Vec<usize>, usize),
+    (sources, held): (Vec<Vec<usize>>, usize),
     separated: Separation,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
@@ -43,7 +43,7 @@ pub(super) fn over_parameterised(
     let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();
     let result = Regression {
         kind: if held == 0 { RegressionKind::Dynamic } else { RegressionKind::Implicit },
-        rows,
+        sources,
         phi_0,
         phi_1,
         primitive_0,
@@ -51,6 +51,7 @@ pub(super) fn over_parameterised(
         eta_symbols: plant.eta(separated.eta.len()),
         steps,
         alternative: None,
+        unused: Vec::new(),
         eta: separated.eta,
         theta: recovered.theta,
     };

@@ -26,12 +26,29 @@ use pebo_cas::forms::tidy::{shortest, with_fewer_conditions};
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
 
-/// The equation for the rate of an output whose multiplier and right side are affine in phi, as formulas in x: the
-/// components of phi may depend on each other.
-pub(super) fn affine_equation(plant: &Plant, domain: &Domain, output: usize) -> Result<Option<Equation>, Obstacle> {
-    let arena = &plant.arena;
+/// The equation for the rate of an output, known as a function of z too, whose multiplier and right side are affine in
+/// phi as formulas in x: the components of phi may depend on each other.
+pub(super) fn affine_equation(
+    plant: &Plant,
+    domain: &Domain,
+    (output, in_z): (usize, Expr),
+) -> Result<Option<Equation>, Obstacle> {
     let Some(rate) = plant.y[output].rate else { return Ok(None) };
-    let Some(factor) = divisor(plant, domain, rate.expr, &plant.hidden())? else { return Ok(None) };
+    let of_states = divisor(plant, domain, rate.expr, &plant.hidden())?;
+    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
+    // A reciprocal of a state may be a component of phi.
+    let of_transform = factor(plant, domain, in_z)?.map(|factor| plant.arena.substitute(factor, &transform));
+    for factor in of_states.into_iter().chain(of_transform) {
+        if let Some(equation) = affine_multiple(plant, domain, output, factor)? {
+            return Ok(Some(equation));
+        }
+    }
+    Ok(None)
+}
+
+/// The equation for the rate of an output times a factor, where both are affine in phi.
+fn affine_multiple(plant: &Plant, domain: &Domain, output: usize, factor: Expr) -> Result<Option<Equation>, Obstacle> {
+    let arena = &plant.arena;
     let z: Vec<Expr> = plant.z.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
     let in_z = |row: &[Expr]| arena.add(row[0], arena.dot(&row[1..], &z));
     let Some(row) = affine::of(plant, domain, factor)? else { return Ok(None) };
@@ -43,7 +60,7 @@ pub(super) fn affine_equation(plant: &Plant, domain: &Domain, output: usize) -> 
     let Some(primitive) = primitive(plant, domain, in_z(&row), plant.y[output].symbol) else { return Ok(None) };
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());
-    Ok(affine::of(plant, domain, moving)?.map(|row| Equation { primitive, rate: in_z(&row) }))
+    Ok(affine::of(plant, domain, moving)?.map(|row| Equation { primitive, rate: in_z(&row), outputs: vec![output] }))
 }
 
 /// The equation for the rate of an output, which is a function of z, y and u; none where it has no such form.
@@ -88,7 +105,7 @@ pub(super) fn equation(
     let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
     let moving = arena.directional(arena.substitute(primitive, &transform), &plant.rates());
     let difference = arena.sub(moving, arena.substitute(right, &transform));
-    Ok(decide(arena, difference, domain).is_zero().then_some(Equation { primitive, rate: right }))
+    Ok(decide(arena, difference, domain).is_zero().then(|| Equation { primitive, rate: right, outputs: vec![output] }))
 }
 
 /// The multiplier of the rate: the factor of its denominator that holds z.

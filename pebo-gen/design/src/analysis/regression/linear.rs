@@ -149,7 +149,7 @@ pub(super) fn linear(
     }
     Regression {
         kind: RegressionKind::Dynamic,
-        rows,
+        sources: rows.into_iter().map(|row| vec![row]).collect(),
         phi_0,
         phi_1,
         primitive_0: Vec::new(),
@@ -159,5 +159,6 @@ pub(super) fn linear(
         eta_symbols: plant.eta(theta.len()),
         steps: Vec::new(),
         alternative: None,
+        unused: Vec::new(),
     }
 }

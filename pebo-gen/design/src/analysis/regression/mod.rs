@@ -15,10 +15,10 @@ mod equation;
 mod functions;
 mod implicit;
 mod linear;
+mod outputs;
 mod refusal;
 mod relations;
 mod separation;
-mod valued;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,12 +35,12 @@ use combined::under_derivative;
 pub(super) use differentiated::{differentiated, no_such_form};
 use functions::over_parameterised;
 use linear::{decompose, linear};
+pub(super) use outputs::with_all_outputs;
 use refusal::{
     OtherForm, hidden_by_signals, nonlinear, not_in_other_forms, not_recovered, not_tried, refuted, undecided,
 };
 pub(super) use static_relation::from_identities;
 use static_relation::from_relations;
-pub(super) use valued::by_values;
 
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";
@@ -55,12 +55,24 @@ fn on_domain_side(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     field.and_then(|field| Ok(field.show(&field.fraction(rate)?))).unwrap_or(rate)
 }
 
-/// A form in which the unknowns of a rate that is not affine may be linear all the same, if not all such forms were
-/// tried.
+/// A form in which the unknowns of a rate that is not affine, a function of z, may be linear all the same, if not all
+/// such forms were tried on each cell.
 fn other_form(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> Option<OtherForm> {
     let arena = &plant.arena;
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
-    let below = implicit::factor(plant, domain, rate).ok().flatten();
+    let Ok(cells) = domain.cells(arena, &[rate], |divider| arena.depends_on(divider, &unknown)) else {
+        return Some(OtherForm::Unknown);
+    };
+    cells.iter().find_map(|cell| {
+        let branch = cell.domain.analytic(arena, &[rate])[0];
+        other_form_on_cell(plant, &cell.domain, cascade, branch)
+    })
+}
+
+fn other_form_on_cell(plant: &Plant, domain: &Domain, cascade: &Cascade, rate: Expr) -> Option<OtherForm> {
+    let arena = &plant.arena;
+    let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
+    let Ok(below) = implicit::factor(plant, domain, rate) else { return Some(OtherForm::Unknown) };
     if let Some(below) = below.filter(|below| arena.depends_on(*below, &unknown)) {
         let both = [below, arena.mul(below, rate)];
         if !matches!(separation::separate(plant, domain, &both), Ok(None)) {
@@ -118,7 +130,14 @@ pub(super) fn of_separable_rates(
     let in_z = known.map(|(index, rate)| (index, of_z(plant, domain, left_inverse, rate)));
     let (outputs, rates): (Vec<usize>, Vec<Expr>) = in_z.filter(|(_, rate)| is_separable(plant, domain, *rate)).unzip();
     let separated = separation::separate(plant, domain, &rates).ok()??;
-    over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found)
+    over_parameterised(
+        plant,
+        domain,
+        left_inverse,
+        (outputs.into_iter().map(|output| vec![output]).collect(), 0),
+        separated,
+        found,
+    )
 }
 
 /// A rate as a function of z.
@@ -198,7 +217,7 @@ pub(super) fn prove(
             Ok(Some(_)) if cascade.lambda.is_some() => search.untried = true,
             Ok(Some(separated)) => {
                 let eta: Vec<String> = separated.eta.iter().map(|e| plant.arena.print(*e)).collect();
-                let outputs = rows.iter().map(|r| r.0).collect();
+                let outputs = rows.iter().map(|r| vec![r.0]).collect();
                 if let Some(claim) = over_parameterised(plant, domain, left_inverse, (outputs, 0), separated, found) {
                     return claim;
                 }

@@ -12,6 +12,7 @@ use pebo_cas::forms::tidy::{proved_shortest, shortest, shortest_equal};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
+use super::equation::{Equation, outputs_in, outputs_of};
 use super::functions::steps;
 use super::refusal::undecided;
 
@@ -41,7 +42,7 @@ pub(in crate::analysis) fn from_identities(
     }
     if cascade.lambda.is_some() {
         let of = |identity: &Formula| match cleared::rows(plant, domain, identity.expr) {
-            Ok(rows) => rows.into_iter().map(Ok).collect(),
+            Ok(rows) => rows.into_iter().map(|row| Ok((row, outputs_of(plant, identity)))).collect(),
             Err(obstacle) => vec![Err(obstacle)],
         };
         let rows = plant.identities.iter().flat_map(of).collect();
@@ -66,10 +67,14 @@ pub(super) fn from_relations(
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
     let claim = match cascade.lambda {
         Some(_) => {
-            let rows = relations.iter().filter_map(|relation| in_z(plant, *relation)).map(Ok).collect();
+            let row = |relation: &Expr| Some(Ok((in_z(plant, *relation)?, outputs_in(plant, *relation))));
+            let rows = relations.iter().filter_map(row).collect();
             under_lambda(plant, domain, (rows, span), &mut own)
         }
-        None => constant_relation(plant, domain, left_inverse?, (&relations, span), &mut own),
+        None => {
+            let relations: Vec<Equation> = relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect();
+            constant_relation(plant, domain, left_inverse?, (&relations, span), &mut own)
+        }
     };
     // An undecided claim is left to the rates, which the author can mend.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
@@ -95,7 +100,7 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
-    (rows, span): (Vec<Result<affine::Row, Obstacle>>, Span),
+    (rows, span): (Vec<Result<(affine::Row, Vec<usize>), Obstacle>>, Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
@@ -103,12 +108,15 @@ fn under_lambda(
     let theta: Vec<Expr> = plant.theta.iter().map(|s| arena.of_symbol(*s)).collect();
     let (mut phi_0, mut phi_1) = (Vec::new(), Vec::new());
     let mut known_rows: Vec<&affine::Row> = Vec::new();
-    for row in rows.iter().filter_map(|row| row.as_ref().ok()) {
+    let mut sources: Vec<Vec<usize>> = Vec::new();
+    for (row, outputs) in rows.iter().filter_map(|row| row.as_ref().ok()) {
         let opposite: affine::Row = row.iter().map(|entry| arena.neg(*entry)).collect();
-        if known_rows.iter().any(|known| *known == row || **known == opposite) {
+        if let Some(known) = known_rows.iter().position(|known| *known == row || **known == opposite) {
+            sources[known].extend(outputs);
             continue;
         }
         known_rows.push(row);
+        sources.push(outputs.clone());
         // known + factors (xi + Psi theta) = 0
         phi_0.push(proved_shortest(arena, domain, arena.add(row[0], dot(arena, &row[1..], &xi))));
         let column = |column: usize| {
@@ -137,7 +145,7 @@ fn under_lambda(
     let eta_symbols = plant.eta(theta.len());
     let result = Regression {
         kind: RegressionKind::Static,
-        rows: Vec::new(),
+        sources,
         phi_0,
         phi_1,
         primitive_0: Vec::new(),
@@ -147,6 +155,7 @@ fn under_lambda(
         eta_symbols,
         steps: Vec::new(),
         alternative: None,
+        unused: Vec::new(),
     };
     Claim { verdict: Verdict::Proved, result: Some(result) }
 }
@@ -156,10 +165,11 @@ fn constant_relation(
     plant: &Plant,
     domain: &Domain,
     left_inverse: &LeftInverse,
-    (in_z, span): (&[Expr], Span),
+    (equations, span): (&[Equation], Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
+    let in_z: &[Expr] = &equations.iter().map(|equation| equation.rate).collect::<Vec<_>>();
     match separation::separate(plant, domain, in_z) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
@@ -172,7 +182,7 @@ fn constant_relation(
                 let negated = |row: &Vec<Expr>| row.iter().map(|e| shortest(arena, domain, arena.neg(*e))).collect();
                 let result = Regression {
                     kind: RegressionKind::Static,
-                    rows: Vec::new(),
+                    sources: equations.iter().map(|equation| equation.outputs.clone()).collect(),
                     phi_1: separated.factors.iter().map(negated).collect(),
                     phi_0: as_written(plant, domain, in_z, &separated.known),
                     primitive_0: Vec::new(),
@@ -180,6 +190,7 @@ fn constant_relation(
                     eta_symbols: plant.eta(separated.eta.len()),
                     steps,
                     alternative: None,
+                    unused: Vec::new(),
                     eta: separated.eta,
                     theta: recovered.theta,
                 };

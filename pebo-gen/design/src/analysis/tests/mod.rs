@@ -1,6 +1,7 @@
 //! Verdicts that were wrong once, each on the smallest plant that showed it.
 
 mod cells;
+mod outputs;
 mod seldom;
 
 use super::{Derivation, Excitation, Outcome, Verdict};
@@ -55,7 +56,7 @@ fn a_rate_that_an_unmeasured_signal_moves_is_not_used() {
     let lines = "x: [a]\ny: [y, s]\nu: [u]\nw: [w]\nf_x: {a: u + w}\nphi: [a - s]";
     let (_, other) = derive(&format!("{lines}\nf_y: {{y: a + s, s: w}}"));
     assert_eq!(other.outcome, Outcome::Accepted);
-    assert_eq!(other.regression.result.unwrap().rows, [0]);
+    assert_eq!(other.regression.result.unwrap().rows(), [0]);
     let (_, none) =
         derive("x: [a]\ny: [y, s]\nu: [u]\nw: [w, v]\nf_x: {a: u + w}\nphi: [a - s]\nf_y: {y: a + v, s: w}");
     assert_eq!((none.outcome, none.regression.verdict), (Outcome::Rejected, Verdict::Refuted));

@@ -1,0 +1,59 @@
+//! The outputs of a regression: each that says something has an equation, and one that has none is named.
+
+use super::derive;
+use crate::analysis::{Excitation, Outcome, RegressionKind, UnusedReason};
+
+/// The kind of an accepted plant's regression, the names of the outputs of its rows, and the outputs without a row.
+fn regressed(lines: &str) -> (RegressionKind, Vec<String>, Vec<(String, UnusedReason)>) {
+    let (plant, derivation) = derive(lines);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{lines}: {:?}", derivation.diagnostics);
+    let regression = derivation.regression.result.expect("proved");
+    let name = |output: usize| plant.arena.name(plant.y[output].symbol);
+    let rows = regression.sources.iter().map(|outputs| outputs.iter().map(|o| name(*o)).collect::<Vec<_>>().join("+"));
+    let unused = regression.unused.iter().map(|unused| (name(unused.output), unused.reason));
+    (regression.kind, rows.collect(), unused.collect())
+}
+
+#[test]
+fn a_value_stands_beside_the_rates_of_other_outputs() {
+    let plant = "x: [a]\ny: [r, s]\nu: [v, k]\nf_x: {a: 0}\nf_y: {r: k*a - r}\ng_y: {s: 3*a + v}\nphi: [a]";
+    assert_eq!(regressed(plant), (RegressionKind::Implicit, vec!["r".into(), "s".into()], Vec::new()));
+    // The rate alone loses rank at k = 0.
+    let (_, derivation) = derive(plant);
+    let identified = derivation.identifiability.result.unwrap();
+    assert!(
+        identified.kind == Excitation::Instant && identified.singular_where.is_empty() && identified.everywhere_else
+    );
+}
+
+#[test]
+fn a_value_that_is_linear_times_an_unknown_stands_for_its_rate() {
+    let plant = "parameters: [p]\nx: [a]\ny: [q]\nu: [v]\nf_x: {a: \"-a^2*max(0, v + p)\"}\ng_y: {q: a}\nphi: [1/a]\n\
+                 assume: [a > 0]";
+    assert_eq!(regressed(plant), (RegressionKind::Static, vec!["q".into()], Vec::new()));
+    let (_, derivation) = derive(plant);
+    assert_eq!(derivation.identifiability.result.unwrap().kind, Excitation::Instant);
+}
+
+#[test]
+fn an_output_without_a_row_is_named_with_the_reason() {
+    let unused = |outputs: &str| {
+        let lines = format!("x: [a]\ny: [r, s]\nu: [v]\nw: [d]\nf_x: {{a: 0}}\n{outputs}\nphi: [a]");
+        let (_, rows, unused) = regressed(&lines);
+        assert_eq!(rows, ["r"], "{outputs}");
+        unused
+    };
+    let curved = unused("f_y: {r: v*a - r}\ng_y: {s: sin(a*v)}");
+    assert_eq!(curved, [("s".into(), UnusedReason::Nonlinear)]);
+    assert_eq!(unused("f_y: {r: v*a - r, s: a*d}"), [("s".into(), UnusedReason::Hidden)]);
+    // A known rate says nothing of the unknowns; neither does an output that only drives the plant.
+    assert_eq!(unused("f_y: {r: v*a - r*s}"), []);
+}
+
+#[test]
+fn a_reciprocal_among_the_components_multiplies_a_rate() {
+    let plant = "parameters: [p]\nx: [a, b]\ny: [q]\nu: [v]\n\
+                 f_x: {a: -a^2*(v - p), b: (1/a + v*q)/(3 + sign(b - p))}\n\
+                 f_y: {q: a*(v - (2 + sat(v))*(3*b + abs(b - p)))}\nphi: [1/a, 3*b + abs(b - p)]";
+    assert_eq!(regressed(plant), (RegressionKind::Implicit, vec!["q".into()], Vec::new()));
+}
