@@ -206,6 +206,11 @@ def electromechanical(plant, parts):
 # Zero: proved by polynomials, refuted by a point.
 
 
+# Functions that are analytic while arguments or differences of arguments keep their signs; and what derivatives of these are.
+BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
+STEPS = (sp.Heaviside, sp.DiracDelta)
+
+
 def polynomials(exprs):
     """Expressions as quotients of polynomials in kernels that they share, with the relations among these, innermost first."""
     known, relations = {}, []
@@ -275,7 +280,8 @@ def is_zero(expr, identities=()):
     if numerator != 0 and identities:
         ideal = [sp.numer(sp.together(identity)) for identity in vanishing]
         numerator = sp.reduced(numerator, ideal)[1]
-    return numerator == 0 or (not identities and sp.simplify(expr) == 0)
+    # Of arguments with signs SymPy simplifies little, and for long: cells do better.
+    return numerator == 0 or (not identities and not expr.has(*BENT, *STEPS) and sp.simplify(expr) == 0)
 
 
 class Points:
@@ -395,9 +401,6 @@ def rank(rows):
     return found
 
 
-BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
-
-
 class Cell:
     """The cell of a point, on which no argument of abs, sign, max and min changes its sign."""
 
@@ -406,7 +409,8 @@ class Cell:
 
     def smooth(self, expr):
         """The expression by its branches, from the innermost on. On a border, which is not left, any branch will do."""
-        return expr.replace(lambda e: isinstance(e, BENT), self.branch) if expr.has(*BENT) else expr
+        bent = BENT + STEPS
+        return expr.replace(lambda e: isinstance(e, bent), self.branch) if expr.has(*bent) else expr
 
     def branch(self, e):
         if isinstance(e, (sp.Max, sp.Min)):
@@ -414,9 +418,11 @@ class Cell:
             best = (max if isinstance(e, sp.Max) else min)(values)
             self.on_border |= values.count(best) > 1
             return e.args[values.index(best)]
-        (argument,) = e.args
+        argument = e.args[0]
         sign = sp.sign(value(argument, self.point))
         self.on_border |= sign == 0
+        if isinstance(e, STEPS):
+            return sp.Integer(1) if isinstance(e, sp.Heaviside) and sign > 0 else ZERO
         return sign if isinstance(e, sp.sign) else sign * argument
 
 
@@ -506,6 +512,16 @@ class Trajectories:
                       if signal not in plant.given and signal not in plant.u]
         # False where an equation could not be solved.
         self.all = True
+
+    def met(self, symbols):
+        """Points of the domain: exact ones, as a rank that is not full would seem to be beside an identity."""
+        exact = bool(self.plant.identities)
+        while exact:
+            points = [point for point, _ in self.solved([self.plant.valued(e) for e in self.plant.identities], [], [])]
+            exact = bool(points)
+            yield from points
+        while True:
+            yield self.points.point(symbols)
 
     def of(self, condition):
         """Points of the trajectories of a condition, with the rows there."""
@@ -691,11 +707,26 @@ class Certificate:
                 expr = expr.subs({sp.Abs(above): above, sp.Abs(-above): above, **signs})
         if is_zero(expr, self.plant.identities):
             return self.say(claim, "proved")
+        if expr.has(*BENT, *STEPS):
+            cells = self.branches(expr)
+            if cells and all(is_zero(branch, self.plant.identities) for branch in cells):
+                return self.say(claim, "proved", f" on each cell that was met: {len(cells)} forms")
         found = self.points.refutes(expr)
         if found:
             point = ", ".join(f"{symbol} = {value!s}" for symbol, value in found[0].items())
             return self.say(claim, "FALSE", f": the difference is {found[1]!s} at {point}")
         return self.say(claim, "undecided", f": {sp.sstr(expr)[:200]}")
+
+    def branches(self, expr):
+        """The forms that an expression has on the cells that are met."""
+        found = []
+        for _ in range(DRAWN):
+            point = self.points.point(expr.free_symbols)
+            with contextlib.suppress(NoValue):
+                cell = Cell(point or {})
+                branch = cell.smooth(expr)
+                found += [branch] if not cell.on_border and branch not in found else []
+        return found
 
     def reads(self, claim, exprs, allowed):
         """Says whether expressions hold no symbol but these and parameters."""
@@ -783,12 +814,12 @@ class Certificate:
         looked = [*self.regressor, *(self.primitive or []), *rates, *self.h, *self.Lambda, *self.plant.identities]
         texts = [*flat([entry.get("positive", []) for entry in cells])]
         symbols = set().union(*(self.plant.valued(e).free_symbols for e in [*looked, *formulas(texts)]))
-        patterns = {}
-        for drawn in range(DRAWN + OF_CELL):
-            deficient = [rows for _, rows, full, listed in patterns.values() if not full and not listed]
-            if drawn >= (DRAWN if any(e.has(*BENT) for e in looked) else 1) and not deficient:
+        patterns, points = {}, self.sets.met(symbols - {*self.plant.given} - {*self.at_start})
+        least = DRAWN if any(e.has(*BENT) for e in looked) else 1
+        for drawn in range(least + OF_CELL):
+            if drawn >= least and all(full or listed for _, _, full, listed in patterns.values()):
                 break
-            point = self.points.point(symbols - {*self.plant.given} - {*self.at_start})
+            point = next(points, None)
             if point is None:
                 return self.say(claim, "undecided", ": no point was met at which the assumptions hold")
             point |= {output: self.plant.valued(given).xreplace(point) for output, given in self.plant.given.items()}

@@ -7,7 +7,9 @@
 mod python;
 
 use pebo_cas::{Expr, Symbol};
-use pebo_design::analysis::{BlindTrajectory, Derivation, Excitation, RegressionKind, Trajectories, TrajectoryCondition};
+use pebo_design::analysis::{
+    BlindTrajectory, Derivation, Excitation, RegressionKind, Trajectories, TrajectoryCondition,
+};
 use pebo_design::model::class::Matrix;
 use pebo_design::model::{Class, Entry, Formula, Model};
 use pebo_design::plant::Plant;

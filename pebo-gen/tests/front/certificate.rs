@@ -56,8 +56,9 @@ fn what_is_said_of_trajectories_is_stated_as_data() {
     let cell = "{\"while\": \"a < 0\", \"positive\": [\"-a\"], \"hidden\": [[\"1\"]]}";
     assert!(half.contains("\"identifiability\": \"excitation\"") && half.contains(cell), "{half}");
     // At rest one sum alone is seen, and with a constant input all is.
-    let battery = stated("model: m\nx: [s, h]\ny: [V]\nu: [I]\nf_x: {s: I, h: -abs(I)*h}\nf_y: {V: s + h}\nphi: [s, h]\n");
-    let rest = "\"rest\": True, \"identified\": [\"z2 + z1\"], \"hidden\": [[\"-1\", \"1\"]]}";
+    let battery =
+        stated("model: m\nx: [s, h]\ny: [V]\nu: [I]\nf_x: {s: I, h: -abs(I)*h}\nf_y: {V: s + h}\nphi: [s, h]\n");
+    let rest = "\"rest\": True, \"identified\": [\"z1 + z2\"], \"hidden\": [[\"-1\", \"1\"]]}";
     assert!(battery.contains(rest) && battery.contains("\"by itself\": True, \"at rest\": False"), "{battery}");
     // Of what is undecided nothing is claimed.
     let motor = stated(include_str!("../../../models/motor_flux.yaml"));
