@@ -29,7 +29,7 @@ SMALL = sp.Float(10, DIGITS) ** (-DIGITS // 2)
 DRAWN = 64
 # Points of a cell at which a rank may fall short by chance, before it is called false.
 OF_CELL = 12
-# Points at which a statement on trajectories is looked at, and ways in which its equations are solved for other symbols.
+# Points at which a statement on trajectories is looked at, and ways in which its equations are solved.
 OF_STATEMENT, WAYS = 4, 3
 
 NAMES = {}
@@ -150,6 +150,10 @@ class Plant:
             expr = expr.xreplace(self.given)
         return expr
 
+    def outputs(self, point):
+        """The outputs that are given by their values."""
+        return {output: self.valued(given).xreplace(point) for output, given in self.given.items()}
+
     def along(self, expr, more={}):
         """The time derivative of an expression."""
         if self.missing(expr, more):
@@ -206,7 +210,7 @@ def electromechanical(plant, parts):
 # Zero: proved by polynomials, refuted by a point.
 
 
-# Functions that are analytic while arguments or differences of arguments keep their signs; and what derivatives of these are.
+# Functions that are analytic while arguments or differences of arguments keep their signs; and their derivatives.
 BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
 STEPS = (sp.Heaviside, sp.DiracDelta)
 
@@ -388,9 +392,8 @@ def rank(rows):
         # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).
         for _ in range(2):
             lengths = [sp.sqrt(sum(entry**2 for entry in line)).evalf(DIGITS) for line in zip(*rows)]
-            rows = [list(line) for line in zip(*([e / length if length else e for e in row]
-                                                 for row, length in zip(zip(*rows), lengths)))]
-            rows = [list(line) for line in zip(*rows)]
+            # Scaled and turned over: the second time it is the rows.
+            rows = [[e / length if length else e for e in line] for line, length in zip(zip(*rows), lengths)]
     found = 0
     while rows and rows[0]:
         size, i, j = max((abs(entry), -i, -j) for i, row in enumerate(rows) for j, entry in enumerate(row))
@@ -427,13 +430,13 @@ class Cell:
 
 
 class Rows:
-    """The regressor with its derivatives along trajectories: all of them, those with some inputs constant, or equilibria."""
+    """The regressor with its derivatives along trajectories: all of them, those with constant inputs, or equilibria."""
 
     def __init__(self, certificate, cell, constant=(), rest=False):
         plant, self.at_start = certificate.plant, certificate.at_start
         self.smooth = lambda expr: cell.smooth(plant.valued(expr))
         signals = [signal for signal in [*plant.y, *plant.u, *plant.w] if signal not in plant.given]
-        flow = {**dict(zip(certificate.xi, certificate.Lambda * sp.Matrix(certificate.xi) + sp.Matrix(certificate.h)))}
+        flow = dict(zip(certificate.xi, certificate.Lambda * sp.Matrix(certificate.xi) + sp.Matrix(certificate.h)))
         if certificate.psi:
             flow |= dict(zip(flat(certificate.psi), certificate.Lambda * certificate.Psi))
         if rest:
@@ -455,7 +458,7 @@ class Rows:
         return sum((sp.diff(expr, symbol) * self.rates[symbol] for symbol in moving), ZERO)
 
     def bind(self, equations, point):
-        """Free derivatives as these equations determine them, which hold at all times; and rates that then vanish too."""
+        """Sets free derivatives by equations that hold at all times, and returns the rates that have to vanish as well."""
         left = []
         for equation in equations:
             moved = self.along(equation)
@@ -471,7 +474,7 @@ class Rows:
         return left
 
     def level(self, order):
-        """The derivatives of an order, with Psi at its start: it can be inverted at all times, and takes nothing from ranks."""
+        """The derivatives of an order, with Psi at its start: being inverted at all times, it takes nothing from ranks."""
         if not self.levels:
             # Of a row under a derivative, the rate of the factor counts as well.
             rows = self.certificate.regressor.applyfunc(self.smooth)
@@ -499,6 +502,15 @@ class Rows:
             if known in (before, level.cols):
                 break
         return values, known
+
+
+def quadratic(factor, symbol):
+    """The values of a symbol at which a polynomial vanishes that is linear or quadratic in it."""
+    *square, slope, rest = sp.Poly(factor, symbol).all_coeffs()
+    if not square:
+        return [-rest / slope]
+    root = sp.sqrt(slope**2 - 4 * square[0] * rest)
+    return [(-slope + root) / (2 * square[0]), (-slope - root) / (2 * square[0])]
 
 
 class Trajectories:
@@ -546,7 +558,7 @@ class Trajectories:
                     return
 
     def remaining(self, point, factors, zero, positive, constant, rest, depth=0):
-        """The point with the rows there, if the equations go on to hold; if not, one at which their rates vanish too."""
+        """The point with its rows, if the equations go on to hold; if not, one at which their rates vanish too."""
         rows = Rows(self.certificate, Cell(point), constant, rest)
         cell = Cell(point)
         left = [] if rest else rows.bind([cell.smooth(factor) for factor in factors], point)
@@ -614,21 +626,20 @@ class Trajectories:
         symbols = [s for s in self.signals if s in whole.free_symbols]
         self.points.draw.shuffle(symbols)
         symbols += sorted(parameters & whole.free_symbols, key=str)
-        degrees = {s: 9 if s in within else sp.degree(factor, s) for s in symbols}
-        for symbol in sorted(symbols, key=degrees.get):
-            if degrees[symbol] <= 2:
-                *square, slope, rest = (e.xreplace(back) for e in sp.Poly(factor, symbol).all_coeffs())
-                if not square:
-                    return (yield symbol, -rest / slope)
-                root = sp.sqrt(slope**2 - 4 * square[0] * rest)
-                yield symbol, (-slope + root) / (2 * square[0])
-                return (yield symbol, (-slope - root) / (2 * square[0]))
-            try:
-                found = sp.solve(whole, symbol)
-            except NotImplementedError:
-                continue
-            if found:
-                return (yield from ((symbol, root) for root in found))
+        degree = lambda s: sp.degree(factor, s) if s in factor.free_symbols else 9
+        degrees = {s: 9 if s in within else degree(s) for s in symbols}
+        best = min(symbols, key=degrees.get, default=None)
+        if best is not None and degrees[best] <= 2:
+            return (yield from ((best, root.xreplace(back)) for root in quadratic(factor, best)))
+        # Or a symbol of one function alone, which is inverted.
+        for symbol in symbols:
+            held = [kernel for kernel in factor.free_symbols & {*back} if symbol in back[kernel].free_symbols]
+            if len(held) == 1 and symbol not in factor.free_symbols and sp.degree(factor, held[0]) <= 2:
+                level = sp.Dummy(real=True)
+                with contextlib.suppress(NotImplementedError):
+                    inverse = sp.solve(back[held[0]] - level, symbol)
+                    values = [root.xreplace(back) for root in quadratic(factor, held[0])]
+                    return (yield from ((symbol, e.xreplace({level: root})) for root in values for e in inverse))
         self.all &= not symbols
 
     def placed(self, fixed, solution, equations, positive):
@@ -647,7 +658,7 @@ class Trajectories:
                     size = value(point[symbol], {})
                     if symbol.is_positive and not size > 0 or symbol.is_negative and not size < 0:
                         raise NoValue
-                point |= {output: self.plant.valued(formula).xreplace(point) for output, formula in self.plant.given.items()}
+                point |= self.plant.outputs(point)
                 if all(value(e, point) > 0 for e in positive) and self.points.is_assumed(point):
                     if all(value(e, point) == 0 for e in equations):
                         return point
@@ -687,7 +698,7 @@ class Certificate:
         self.regressor = self.sides("phi")[1]
         self.primitive = self.sides("primitive")[1] if "primitive_1" in derived else None
         self.width = self.regressor.cols
-        self.is_linear = derived.get("eta") == {eta: theta for eta, theta in zip(derived.get("eta", []), derived["theta"])}
+        self.is_linear = [*derived["eta"].values()] == derived["theta"]
         self.parameters = {symbol for symbol in self.plant.parameters if symbol.is_Symbol}
         self.motion = derived.get("trajectories", {})
         self.sets = Trajectories(self)
@@ -822,7 +833,7 @@ class Certificate:
             point = next(points, None)
             if point is None:
                 return self.say(claim, "undecided", ": no point was met at which the assumptions hold")
-            point |= {output: self.plant.valued(given).xreplace(point) for output, given in self.plant.given.items()}
+            point |= self.plant.outputs(point)
             try:
                 cell = Cell(point)
                 smooth = tuple(cell.smooth(self.plant.valued(e)) for e in looked)

@@ -1,7 +1,8 @@
 //! The certificate of an accepted model: a Python script that proves its claims again with `SymPy`, and without pebo.
 //!
 //! In: the model as it was written, and its derivation. Out: a script of two parts, the formulas as texts in the model
-//! file's grammar and `checker.py`, which reads and proves them. The plant is restated from the author's own formulas,
+//! file's grammar and `checker.py`, which reads and proves them; what the verdict says of trajectories it looks at in
+//! points of them. The plant is restated from the author's own formulas,
 //! also where it is written by class, so that a mistake of pebo's in reading, expanding or proving it is found.
 
 mod python;
@@ -34,7 +35,8 @@ pub(crate) fn certificate(model: &Model, plant: &Plant, derivation: &Derivation)
          \n    pip install sympy\n    python3 {name}.py\n\
          \n\
          PLANT is what its author wrote; DERIVED is what pebo-gen made of it. Exit status 0: every claim is proved;\n\
-         1: a claim is false, and a point shows it; 2: SymPy could decide neither.\n\
+         1: a claim is false, and a point shows it; 2: SymPy could decide neither. What is said of trajectories is\n\
+         looked at in points of them: one may show that it is false, and none proves it.\n\
          \"\"\"\n"
     );
     let part = |name: &str, literal: &Literal| {
