@@ -1,5 +1,6 @@
 """Certificates prove, and fail when a claim is falsified: `certificates.py SCRIPT..` runs each script that
-`pebo-gen certificate` wrote as its user would, and then with one term of one claim changed, for each claim in turn.
+`pebo-gen certificate` wrote as its user would, and then with one term of one claim changed, for each claim in turn; so
+also for what is said of trajectories, where the script met points of them.
 
 Exit status 0 if every script proves all of its claims and every changed one finds the false claim, else 1.
 """
@@ -8,6 +9,7 @@ import concurrent.futures
 import contextlib
 import copy
 import io
+import re
 import runpy
 import subprocess
 import sys
@@ -55,6 +57,61 @@ def falsified(plant, derived):
     yield "identifiability", changed(blind), "identifiability:"
 
 
+def on_trajectories(derived, said):
+    """The same of statements on trajectories that were looked at."""
+    unknowns = derived["z"]
+    if list(derived["eta"].values()) != derived["theta"]:
+        unknowns = list(derived["eta"])
+
+    def changed(change):
+        copied = copy.deepcopy(derived)
+        change(copied.setdefault("trajectories", {}))
+        return copied
+
+    motion = derived.get("trajectories", {})
+    if derived["identifiability"] == "excitation":
+        instant = copy.deepcopy(derived) | {"identifiability": "instant"}
+        instant.pop("trajectories", None)
+        yield "instant", instant, "identifiability: instant"
+    if motion.get("by itself") is False:
+        yield "constant inputs", changed(lambda m: m.update({"by itself": True})), "identified with constant inputs"
+    for place, entry in enumerate(motion.get("blind", [])):
+        line = f"while {entry['while']}"
+        if not any(text.startswith(line) and " holds at " in text for text in said.splitlines()):
+            continue
+
+        def fewer(m):
+            m["blind"][place]["hidden"].pop()
+
+        def other(m):
+            # Another entry along an unknown that this combination holds.
+            name = re.search("|".join(map(re.escape, unknowns)), entry["identified"][0])[0]
+            m["blind"][place]["hidden"][0][unknowns.index(name)] += " + 1"
+
+        def combination(m):
+            # An unknown that moves along a direction.
+            moved = next(name for name, part in zip(unknowns, entry["hidden"][0]) if part != "0")
+            m["blind"][place]["identified"][0] += f" + {moved}"
+
+        yield "number of directions", changed(fewer), line
+        if "identified" in entry:
+            yield "direction", changed(other), line
+            yield "combination", changed(combination), line
+        if entry.keys() & {"rest", "zero", "positive", "constant"} == {"rest"}:
+
+            def at_rest(m):
+                m["at rest"] = True
+                del m["blind"][place]
+
+            yield "rest", changed(at_rest), "identified at rest"
+        if entry.keys() & {"rest", "zero", "positive", "constant"} == {"positive"}:
+
+            def everywhere(m):
+                del m["blind"][place]
+
+            yield "cell", changed(everywhere), "identifiability: "
+
+
 def look(script):
     """What there is to say of a script, and how many of its claims are not as they must be."""
     start = time.process_time()
@@ -63,10 +120,16 @@ def look(script):
         return f"{script}: exit {run.returncode}\n{run.stdout}{run.stderr}", 1
     module = runpy.run_path(script)
     caught, missed = [], []
-    for name, derived, line in falsified(module["PLANT"], module["DERIVED"]):
+    whole = [(*case, ["prove"]) for case in falsified(module["PLANT"], module["DERIVED"])]
+    # These are looked at alone: the other claims are as they were.
+    motion = [(*case, ["identifiability", "trajectories"]) for case in on_trajectories(module["DERIVED"], run.stdout)]
+    for name, derived, line, claims in whole + motion:
         said = io.StringIO()
+        certificate = module["Certificate"](module["PLANT"], derived)
         with contextlib.redirect_stdout(said):
-            verdict = module["Certificate"](module["PLANT"], derived).prove()
+            for claim in claims:
+                getattr(certificate, claim)()
+        verdict = certificate.worst
         false = [text for text in said.getvalue().splitlines() if " FALSE" in text]
         if verdict == 2 and any(text.startswith(line) for text in false):
             caught.append(name)

@@ -1,4 +1,5 @@
 
+import contextlib
 import random
 import re
 import sys
@@ -11,7 +12,7 @@ from mpmath.libmp import NoConvergence
 # ---------------------------------------------------------------------------------------------------------------------
 # Formulas: the grammar of a model file is that of Python but for `^`, and its numbers are exact.
 
-TOKEN = re.compile(r"(?P<number>(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<power>\^)|(?P<other>\S)|\s+")
+TOKEN = re.compile(r"(?P<number>(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*'*)|(?P<power>\^)|(?P<other>\S)|\s+")
 FUNCTIONS = {
     name: getattr(sp, name)
     for name in (
@@ -22,6 +23,14 @@ FUNCTIONS |= {"abs": sp.Abs, "min": sp.Min, "max": sp.Max, "sat": lambda a: sp.M
 
 # Of the values at which a rank is looked at.
 DIGITS = 160
+# What is left of a zero in so many digits is far below, also where factors such as exp(-8750/T) are not of one size.
+SMALL = sp.Float(10, DIGITS) ** (-DIGITS // 2)
+# Points at which the signs of arguments are looked at: a cell that holds one in sixteen is missed once in sixty times.
+DRAWN = 64
+# Points of a cell at which a rank may fall short by chance, before it is called false.
+OF_CELL = 12
+# Points at which a statement on trajectories is looked at, and ways in which its equations are solved.
+OF_STATEMENT, WAYS = 4, 3
 
 NAMES = {}
 ZERO = sp.Integer(0)
@@ -40,10 +49,20 @@ def formula(text):
             code.append(f"number('{piece}')")
         elif token["name"]:
             called = re.match(r"\s*\(", text[token.end():])
-            code.append(f"FUNCTIONS['{piece}']" if called else f"NAMES['{piece}']")
+            code.append(f"FUNCTIONS['{piece}']" if called else f'named("{piece}")')
         else:
             code.append("**" if kind == "power" else piece)
-    return sp.sympify(eval("".join(code), {"number": number, "FUNCTIONS": FUNCTIONS, "NAMES": NAMES}))
+    return sp.sympify(eval("".join(code), {"number": number, "FUNCTIONS": FUNCTIONS, "named": named}))
+
+
+def named(text):
+    """The symbol of a name; that of a derivative, as v'', if nothing else is known of it."""
+    name = text.rstrip("'")
+    return NAMES[name] if name == text else derivative(NAMES[name], len(text) - len(name))
+
+
+def derivative(signal, order):
+    return sp.Symbol(f"{signal}^({order})", real=True)
 
 
 def formulas(texts):
@@ -83,7 +102,8 @@ class Plant:
         self.values = {name: number(value) for name, value in constants.items() if value is not None}
         signs = {name: sp.sign(value) for name, value in self.values.items()}
         for text in stated.get("assume", []):
-            for left, relation, right in re.findall(r"(?=([^<>!=]+)(<=|>=|<|>)([^<>!=]+))", text):
+            sides = re.split(r"(<=|>=|!=|<|>)", text)
+            for left, relation, right in zip(sides[::2], sides[1::2], sides[2::2]):
                 for name, bound, above in ((left, right, ">"), (right, left, "<")):
                     if relation == above and bound.strip() == "0":
                         signs[name.strip()] = 1
@@ -107,6 +127,8 @@ class Plant:
         for key, expand in (("lti", linear), ("mechanical", mechanical), ("electromechanical", electromechanical)):
             if key in stated:
                 self.rates |= expand(self, stated[key])
+        if "time" in stated:
+            self.rates[NAMES[stated["time"]]] = sp.Integer(1)
         # Its rate follows where the rates of all in it are known: perhaps after those of other outputs.
         for _ in self.given:
             for output, value in self.given.items():
@@ -121,6 +143,16 @@ class Plant:
     def missing(self, expr, more={}):
         """The signals of an expression whose rate is not known."""
         return [symbol for symbol in self.moving(expr, more) if symbol not in {**self.rates, **more}]
+
+    def valued(self, expr):
+        """The expression without the outputs that are given by their values, which may hold each other."""
+        for _ in self.given:
+            expr = expr.xreplace(self.given)
+        return expr
+
+    def outputs(self, point):
+        """The outputs that are given by their values."""
+        return {output: self.valued(given).xreplace(point) for output, given in self.given.items()}
 
     def along(self, expr, more={}):
         """The time derivative of an expression."""
@@ -178,6 +210,11 @@ def electromechanical(plant, parts):
 # Zero: proved by polynomials, refuted by a point.
 
 
+# Functions that are analytic while arguments or differences of arguments keep their signs; and their derivatives.
+BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
+STEPS = (sp.Heaviside, sp.DiracDelta)
+
+
 def polynomials(exprs):
     """Expressions as quotients of polynomials in kernels that they share, with the relations among these, innermost first."""
     known, relations = {}, []
@@ -201,6 +238,11 @@ def polynomials(exprs):
                 root = known[(e.base, e.exp.q)] = sp.Dummy(f"r{len(known)}")
                 relations.append((root, e.exp.q, inner))
             return root ** e.exp.p
+        if isinstance(e, sp.Abs):
+            if e not in known:
+                inner = convert(e.args[0])
+                relations.append((kernel(e), 2, inner**2))
+            return kernel(e)
         if isinstance(e, (sp.sin, sp.cos)):
             sine, cosine = kernel(sp.sin(e.args[0])), kernel(sp.cos(e.args[0]))
             if not any(relation[0] is cosine for relation in relations):
@@ -212,9 +254,21 @@ def polynomials(exprs):
     for expr in exprs:
         expr = expr.replace(lambda e: isinstance(e, (sp.sinh, sp.cosh, sp.tanh)), lambda e: e.rewrite(sp.exp))
         expr = expr.replace(lambda e: isinstance(e, (sp.asinh, sp.acosh, sp.atanh)), lambda e: e.rewrite(sp.log))
+        # But where the argument is zero, which has no inner points.
+        expr = expr.replace(lambda e: isinstance(e, (sp.Max, sp.Min)), by_size)
+        expr = expr.replace(lambda e: isinstance(e, sp.sign), lambda e: sp.Abs(e.args[0]) / e.args[0])
         expr = expr.replace(lambda e: isinstance(e, sp.tan), lambda e: sp.sin(e.args[0]) / sp.cos(e.args[0]))
         converted.append(convert(sp.expand_log(sp.expand_power_exp(sp.expand_trig(expr)))))
     return converted, relations
+
+
+def by_size(e):
+    """The larger or smaller of several by the sizes of their differences."""
+    first, *others = e.args
+    for other in others:
+        size = sp.Abs(first - other)
+        first = (first + other + (size if isinstance(e, sp.Max) else -size)) / 2
+    return first
 
 
 def is_zero(expr, identities=()):
@@ -230,7 +284,8 @@ def is_zero(expr, identities=()):
     if numerator != 0 and identities:
         ideal = [sp.numer(sp.together(identity)) for identity in vanishing]
         numerator = sp.reduced(numerator, ideal)[1]
-    return numerator == 0 or (not identities and sp.simplify(expr) == 0)
+    # Of arguments with signs SymPy simplifies little, and for long: cells do better.
+    return numerator == 0 or (not identities and not expr.has(*BENT, *STEPS) and sp.simplify(expr) == 0)
 
 
 class Points:
@@ -254,9 +309,12 @@ class Points:
         related = set().union(*(e.free_symbols for e in spoken))
         for _ in range(500):
             point = {symbol: self.value(symbol) for symbol in sorted({*symbols, *related}, key=str)}
-            if self.onto_identities(point) and all(self.holds(*pair, point) for pair in self.plant.assumed):
+            if self.onto_identities(point) and self.is_assumed(point):
                 return point
         return None
+
+    def is_assumed(self, point):
+        return all(self.holds(*pair, point) for pair in self.plant.assumed)
 
     def onto_identities(self, point):
         """Gives one symbol of each identity the value that it has by it, and says whether all of them hold."""
@@ -309,6 +367,316 @@ class Points:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
+# Ranks, cells and trajectories.
+
+
+def value(expr, point):
+    """The value at a point: exact if it is rational, else in so many digits, and zero where none of them is certain."""
+    at = expr.xreplace(point)
+    if at.is_Rational:
+        return at
+    at = at.evalf(DIGITS)
+    if not (at.is_number and at.is_real and at.is_finite):
+        raise NoValue
+    return ZERO if at.is_Float and at._prec < 64 else at
+
+
+class NoValue(Exception):
+    """An expression has no value at a point, which is beyond the domain then."""
+
+
+def rank(rows):
+    """The rank of numbers, by elimination with the largest pivot: exact where all are rational."""
+    rows = [list(row) for row in rows]
+    if not all(entry.is_Rational for row in rows for entry in row):
+        # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).
+        for _ in range(2):
+            lengths = [sp.sqrt(sum(entry**2 for entry in line)).evalf(DIGITS) for line in zip(*rows)]
+            # Scaled and turned over: the second time it is the rows.
+            rows = [[e / length if length else e for e in line] for line, length in zip(zip(*rows), lengths)]
+    found = 0
+    while rows and rows[0]:
+        size, i, j = max((abs(entry), -i, -j) for i, row in enumerate(rows) for j, entry in enumerate(row))
+        if size == 0 or size.is_Float and size < SMALL:
+            break
+        pivot, found = rows.pop(-i), found + 1
+        rows = [[e - row[-j] / pivot[-j] * p for k, (e, p) in enumerate(zip(row, pivot)) if k != -j] for row in rows]
+    return found
+
+
+class Cell:
+    """The cell of a point, on which no argument of abs, sign, max and min changes its sign."""
+
+    def __init__(self, point):
+        self.point, self.on_border = point, False
+
+    def smooth(self, expr):
+        """The expression by its branches, from the innermost on. On a border, which is not left, any branch will do."""
+        bent = BENT + STEPS
+        return expr.replace(lambda e: isinstance(e, bent), self.branch) if expr.has(*bent) else expr
+
+    def branch(self, e):
+        if isinstance(e, (sp.Max, sp.Min)):
+            values = [value(argument, self.point) for argument in e.args]
+            best = (max if isinstance(e, sp.Max) else min)(values)
+            self.on_border |= values.count(best) > 1
+            return e.args[values.index(best)]
+        argument = e.args[0]
+        sign = sp.sign(value(argument, self.point))
+        self.on_border |= sign == 0
+        if isinstance(e, STEPS):
+            return sp.Integer(1) if isinstance(e, sp.Heaviside) and sign > 0 else ZERO
+        return sign if isinstance(e, sp.sign) else sign * argument
+
+
+class Rows:
+    """The regressor with its derivatives along trajectories: all of them, those with constant inputs, or equilibria."""
+
+    def __init__(self, certificate, cell, constant=(), rest=False):
+        plant, self.at_start = certificate.plant, certificate.at_start
+        self.smooth = lambda expr: cell.smooth(plant.valued(expr))
+        signals = [signal for signal in [*plant.y, *plant.u, *plant.w] if signal not in plant.given]
+        flow = dict(zip(certificate.xi, certificate.Lambda * sp.Matrix(certificate.xi) + sp.Matrix(certificate.h)))
+        if certificate.psi:
+            flow |= dict(zip(flat(certificate.psi), certificate.Lambda * certificate.Psi))
+        if rest:
+            # Under a generalised cascade the extension moves all the same.
+            self.free, self.rates = [], {s: ZERO for s in [*plant.x, *signals, *([] if certificate.psi else flow)]}
+        else:
+            self.rates = {s: self.smooth(rate) for s, rate in plant.rates.items() if s not in plant.given}
+            self.rates |= {s: ZERO for s in constant}
+            # Inputs, and outputs whose rate is not given, may move in any way.
+            self.free = [derivative(s, 1) for s in signals if s not in self.rates]
+            self.rates |= {s: derivative(s, 1) for s in signals if s not in self.rates}
+        self.rates = {s: self.smooth(rate) for s, rate in flow.items()} | self.rates
+        self.order, self.levels, self.certificate = 1, [], certificate
+        # But as identities leave it.
+        self.bind([self.smooth(identity) for identity in plant.identities], cell.point)
+
+    def along(self, expr):
+        moving = sorted(expr.free_symbols & {*self.rates}, key=str)
+        return sum((sp.diff(expr, symbol) * self.rates[symbol] for symbol in moving), ZERO)
+
+    def bind(self, equations, point):
+        """Sets free derivatives by equations that hold at all times, and returns the rates that have to vanish as well."""
+        left = []
+        for equation in equations:
+            moved = self.along(equation)
+            for free in self.free:
+                slope = sp.diff(moved, free)
+                if slope != 0 and value(slope, {free_: ZERO for free_ in self.free} | point) != 0:
+                    bound = {free: -moved.xreplace({free: ZERO}) / slope}
+                    self.rates = {symbol: rate.xreplace(bound) for symbol, rate in self.rates.items()}
+                    self.free.remove(free)
+                    break
+            else:
+                left.append(moved)
+        return left
+
+    def level(self, order):
+        """The derivatives of an order, with Psi at its start: being inverted at all times, it takes nothing from ranks."""
+        if not self.levels:
+            # Of a row under a derivative, the rate of the factor counts as well.
+            rows = self.certificate.regressor.applyfunc(self.smooth)
+            if self.certificate.primitive is not None:
+                rows -= self.certificate.primitive.applyfunc(self.smooth).applyfunc(self.along)
+            self.levels = [rows]
+        while len(self.levels) <= order:
+            if len(self.levels) > 1:
+                self.order += 1
+                following = {free: sp.Symbol(f"{str(free)[:-3]}({self.order})", real=True) for free in self.free}
+                self.rates |= following
+                self.free = list(following.values())
+            self.levels.append(self.levels[-1].applyfunc(self.along))
+        return self.levels[order].xreplace(self.at_start)
+
+    def at(self, point, orders):
+        """The values at a point up to an order, or until one adds nothing to the rank: then none does. And the rank."""
+        values, known = [], -1
+        for order in range(orders):
+            level = self.level(order)
+            new = sorted(level.free_symbols - {*point}, key=str)
+            point |= {symbol: self.certificate.points.value(symbol) for symbol in new}
+            values += [[value(entry, point) for entry in row] for row in level.tolist()]
+            known, before = rank(values), known
+            if known in (before, level.cols):
+                break
+        return values, known
+
+
+def quadratic(factor, symbol):
+    """The values of a symbol at which a polynomial vanishes that is linear or quadratic in it."""
+    *square, slope, rest = sp.Poly(factor, symbol).all_coeffs()
+    if not square:
+        return [-rest / slope]
+    root = sp.sqrt(slope**2 - 4 * square[0] * rest)
+    return [(-slope + root) / (2 * square[0]), (-slope - root) / (2 * square[0])]
+
+
+class Trajectories:
+    """Points at which formulas vanish, and go on to vanish: exact ones."""
+
+    def __init__(self, certificate):
+        self.certificate, self.plant, self.points = certificate, certificate.plant, certificate.points
+        plant = self.plant
+        self.signals = [s for s in [*plant.u, *plant.y, *plant.x, *plant.w] if s not in plant.given] + certificate.xi
+        self.rates = [plant.valued(rate) for signal, rate in plant.rates.items()
+                      if signal not in plant.given and signal not in plant.u]
+        # False where an equation could not be solved.
+        self.all = True
+
+    def met(self, symbols):
+        """Points of the domain: exact ones, as a rank that is not full would seem to be beside an identity."""
+        exact = bool(self.plant.identities)
+        while exact:
+            points = [point for point, _ in self.solved([self.plant.valued(e) for e in self.plant.identities], [], [])]
+            exact = bool(points)
+            yield from points
+        while True:
+            yield self.points.point(symbols)
+
+    def of(self, condition):
+        """Points of the trajectories of a condition, with the rows there."""
+        zero = [self.plant.valued(formula(text)) for text in condition.get("zero", [])]
+        positive = formulas(condition.get("positive", []))
+        rest, constant = condition.get("rest"), [NAMES[name] for name in condition.get("constant", [])]
+        equations = zero + [self.plant.valued(identity) for identity in self.plant.identities]
+        if rest:
+            equations += self.rates
+        found = 0
+        for _ in range(WAYS):
+            for point, factors in self.solved(equations, zero, positive):
+                try:
+                    for rows in self.remaining(point, factors, zero, positive, constant, rest):
+                        if rest is not False or any(value(rate, point) != 0 for rate in self.rates):
+                            found += 1
+                            yield rows
+                            break
+                except NoValue:
+                    continue
+                if found >= OF_STATEMENT:
+                    return
+
+    def remaining(self, point, factors, zero, positive, constant, rest, depth=0):
+        """The point with its rows, if the equations go on to hold; if not, one at which their rates vanish too."""
+        rows = Rows(self.certificate, Cell(point), constant, rest)
+        cell = Cell(point)
+        left = [] if rest else rows.bind([cell.smooth(factor) for factor in factors], point)
+        left = [moved for moved in left if value(moved, {free: ZERO for free in rows.free} | point) != 0]
+        if not left:
+            yield point, rows
+        elif depth < len(self.signals):
+            for point, factors in self.solved(factors + left, zero, positive):
+                yield from self.remaining(point, factors, zero, positive, constant, rest, depth + 1)
+
+    def solved(self, equations, zero, positive):
+        """Points at which equations hold, one for each way in which they do, with the factors that vanish there."""
+        spoken = set().union(*(e.free_symbols for e in zero)) if zero else set()
+        parameters = self.certificate.parameters
+        # Parameters of which the condition says nothing have any value.
+        fixed = {symbol: self.points.value(symbol) for symbol in sorted(parameters - spoken, key=str)}
+        for solution, factors in self.branches([e.xreplace(fixed) for e in equations], parameters & spoken):
+            point = self.placed(fixed, solution, equations, positive)
+            if point is not None:
+                yield point, factors
+
+    def branches(self, equations, parameters):
+        """Ways in which all equations hold: pairs of a symbol and its value, which reads symbols that come later."""
+        try:
+            left = [sp.numer(sp.together(e)) for e in equations]
+            left = [e for e in left if e != 0 and sp.expand(e) != 0]
+            if not left:
+                yield [], []
+                return
+            first = min(left, key=lambda e: (e.has(*BENT), len(e.free_symbols), sp.count_ops(e), str(e)))
+            if not first.free_symbols:
+                # What is no zero to the eye may be one.
+                if value(first, {}) == 0:
+                    left.remove(first)
+                    yield from self.branches(left, parameters)
+                return
+            bent = [e for e in first.atoms(*BENT) if not any(argument.has(*BENT) for argument in e.args)]
+            if bent:
+                e = min(bent, key=str)
+                by_sign = {sp.Abs: lambda a: [a, -a], sp.sign: lambda a: [sp.Integer(1), sp.Integer(-1)]}
+                for branch in by_sign[e.func](*e.args) if e.func in by_sign else e.args:
+                    yield from self.branches([other.xreplace({e: branch}) for other in left], parameters)
+                return
+            # A power of e with a quotient in it would be a polynomial of a high degree.
+            kernels = {e: sp.Dummy() for e in first.atoms(sp.Function, sp.Pow) if not (e.is_Pow and e.exp.is_Integer)}
+            factors = [factor for factor, _ in sp.factor_list(first.xreplace(kernels))[1]]
+        except (sp.PolynomialError, NoValue):
+            self.all = False
+            return
+        for factor in factors:
+            back = {kernel: e for e, kernel in kernels.items()}
+            within = set().union(*(back[kernel].free_symbols for kernel in factor.free_symbols & {*back}))
+            roots = self.roots(factor, within, back, parameters)
+            factor = factor.xreplace(back)
+            for symbol, root in roots:
+                following = [e.xreplace({symbol: root}) for e in left]
+                for solution, others in self.branches(following, parameters):
+                    yield [(symbol, root), *solution], [factor, *others]
+
+    def roots(self, factor, within, back, parameters):
+        """A symbol of a factor with the values at which it vanishes, one by one; some symbols are within functions."""
+        whole = factor.xreplace(back)
+        if whole.is_nonzero:
+            return
+        symbols = [s for s in self.signals if s in whole.free_symbols]
+        self.points.draw.shuffle(symbols)
+        symbols += sorted(parameters & whole.free_symbols, key=str)
+        degree = lambda s: sp.degree(factor, s) if s in factor.free_symbols else 9
+        degrees = {s: 9 if s in within else degree(s) for s in symbols}
+        best = min(symbols, key=degrees.get, default=None)
+        if best is not None and degrees[best] <= 2:
+            return (yield from ((best, root.xreplace(back)) for root in quadratic(factor, best)))
+        # Or a symbol of one function alone, which is inverted.
+        for symbol in symbols:
+            held = [kernel for kernel in factor.free_symbols & {*back} if symbol in back[kernel].free_symbols]
+            if len(held) == 1 and symbol not in factor.free_symbols and sp.degree(factor, held[0]) <= 2:
+                level = sp.Dummy(real=True)
+                with contextlib.suppress(NotImplementedError):
+                    inverse = sp.solve(back[held[0]] - level, symbol)
+                    values = [root.xreplace(back) for root in quadratic(factor, held[0])]
+                    return (yield from ((symbol, e.xreplace({level: root})) for root in values for e in inverse))
+        self.all &= not symbols
+
+    def placed(self, fixed, solution, equations, positive):
+        """A point with these values at which all equations hold, and what is assumed."""
+        at = {symbol for symbol, _ in solution}
+        spoken = [*equations, *positive, *(e for left, _, right in self.plant.assumed for e in (left, right))]
+        spoken += self.certificate.regressor[:] + list(self.plant.rates.values()) + list(self.plant.given.values())
+        drawn = {*self.signals, *self.certificate.parameters}.union(*(e.free_symbols for e in spoken))
+        drawn -= at | {*fixed, *self.plant.given} | {*self.certificate.at_start}
+        drawn = sorted(drawn, key=str)
+        for _ in range(100):
+            point = fixed | {symbol: self.points.value(symbol) for symbol in drawn}
+            try:
+                for symbol, root in reversed(solution):
+                    point[symbol] = root.xreplace(point)
+                    size = value(point[symbol], {})
+                    if symbol.is_positive and not size > 0 or symbol.is_negative and not size < 0:
+                        raise NoValue
+                point |= self.plant.outputs(point)
+                if all(value(e, point) > 0 for e in positive) and self.points.is_assumed(point):
+                    if all(value(e, point) == 0 for e in equations):
+                        return point
+            except NoValue:
+                pass
+        return None
+
+    def holds(self, condition, point):
+        """Whether a condition on signals alone holds at a point."""
+        try:
+            return all(value(self.plant.valued(e), point) == 0 for e in formulas(condition.get("zero", []))) and all(
+                value(self.plant.valued(e), point) > 0 for e in formulas(condition.get("positive", []))
+            )
+        except NoValue:
+            return False
+
+
+# ---------------------------------------------------------------------------------------------------------------------
 # The claims.
 
 
@@ -326,9 +694,18 @@ class Certificate:
         n = len(self.phi)
         self.Lambda = sp.Matrix([formulas(row) for row in derived["Lambda"]]) if "Lambda" in derived else sp.zeros(n, n)
         self.Psi = sp.Matrix(self.psi) if self.psi else sp.eye(n)
+        self.at_start = dict(zip(flat(self.psi), sp.eye(n))) if self.psi else {}
+        self.regressor = self.sides("phi")[1]
+        self.primitive = self.sides("primitive")[1] if "primitive_1" in derived else None
+        self.width = self.regressor.cols
+        self.is_linear = [*derived["eta"].values()] == derived["theta"]
+        self.parameters = {symbol for symbol in self.plant.parameters if symbol.is_Symbol}
+        self.motion = derived.get("trajectories", {})
+        self.sets = Trajectories(self)
 
     def say(self, claim, verdict, detail=""):
-        self.worst = max(self.worst, {"proved": 0, "FALSE": 2, "undecided": 1}[verdict])
+        # What holds at points is a statement on trajectories: no point proves it, but one can refute it.
+        self.worst = max(self.worst, {"FALSE": 2, "undecided": 1}.get(verdict, 0))
         print(f"{claim:<40} {verdict}{detail}")
 
     def vanishes(self, claim, expr):
@@ -341,11 +718,26 @@ class Certificate:
                 expr = expr.subs({sp.Abs(above): above, sp.Abs(-above): above, **signs})
         if is_zero(expr, self.plant.identities):
             return self.say(claim, "proved")
+        if expr.has(*BENT, *STEPS):
+            cells = self.branches(expr)
+            if cells and all(is_zero(branch, self.plant.identities) for branch in cells):
+                return self.say(claim, "proved", f" on each cell that was met: {len(cells)} forms")
         found = self.points.refutes(expr)
         if found:
             point = ", ".join(f"{symbol} = {value!s}" for symbol, value in found[0].items())
             return self.say(claim, "FALSE", f": the difference is {found[1]!s} at {point}")
         return self.say(claim, "undecided", f": {sp.sstr(expr)[:200]}")
+
+    def branches(self, expr):
+        """The forms that an expression has on the cells that are met."""
+        found = []
+        for _ in range(DRAWN):
+            point = self.points.point(expr.free_symbols)
+            with contextlib.suppress(NoValue):
+                cell = Cell(point or {})
+                branch = cell.smooth(expr)
+                found += [branch] if not cell.on_border and branch not in found else []
+        return found
 
     def reads(self, claim, exprs, allowed):
         """Says whether expressions hold no symbol but these and parameters."""
@@ -418,50 +810,128 @@ class Certificate:
         return sp.Matrix(formulas(known)) if known else zero_0, sp.Matrix(list(map(formulas, rows))) if rows else zero_1
 
     def identifiability(self):
-        """The regressor has full column rank at a point; if it takes excitation, with its derivatives along the plant; if it
-        bends, at points of several parts of the domain together."""
-        plant, kind = self.plant, self.derived["identifiability"]
-        regressor = self.sides("phi")[1]
-        if "primitive_1" in self.derived:
-            regressor = sp.Matrix.vstack(regressor, self.sides("primitive")[1])
-        width = regressor.cols
-        shown = self.derived.get("determinant of phi_1' phi_1")
-        # Psi can be inverted at all times, and is left out of what is asked of ranks.
-        at_start = dict(zip(flat(self.psi), sp.eye(len(self.phi)))) if self.psi else {}
-        if shown and width <= 3 and "primitive_1" not in self.derived:
-            start = regressor.subs(at_start)
+        """On each cell of the domain the regressor has full column rank; if it takes excitation, with its derivatives along the
+        plant. A cell that is listed may have a lower one; if all are, several have it together."""
+        kind, shown = self.derived["identifiability"], self.derived.get("determinant of phi_1' phi_1")
+        if shown and self.width <= 3 and self.primitive is None:
+            start = self.regressor.subs(self.at_start)
             self.vanishes("the determinant of phi_1' phi_1", (start.T * start).det() - formula(shown))
-        rows, moved = [regressor], regressor
-        rates = dict(zip(self.xi, self.Lambda * sp.Matrix(self.xi) + sp.Matrix(self.h)))
-        if self.psi:
-            rates |= dict(zip(flat(self.psi), self.Lambda * self.Psi))
-        for order in range(width - 1 if kind == "excitation" else 0):
-            for signal in [*plant.y, *plant.u, *plant.w]:
-                # Inputs, and outputs whose rate is not given, may move in any way.
-                last = signal if order == 0 else sp.Symbol(f"{signal}^({order})", real=True)
-                if order > 0 or signal not in plant.rates:
-                    rates.setdefault(last, sp.Symbol(f"{signal}^({order + 1})", real=True))
-            moved = moved.applyfunc(lambda entry: plant.along(entry, rates))
-            rows.append(moved)
-        stacked = sp.Matrix.vstack(*rows).subs(plant.given).subs(at_start)
-        for _ in range(12):
-            points = [self.points.point(stacked.free_symbols) for _ in range(6 if kind == "parts" else 1)]
-            if None in points:
-                return self.say(f"identifiability: {kind}", "undecided", ": no point was met at which the assumptions hold")
-            values = sp.Matrix.vstack(*(stacked.subs(point).evalf(DIGITS) for point in points))
-            if all(value.is_number and value.is_finite for value in values):
-                # Columns and then rows of the length one: an unknown may enter with a factor such as exp(-8750/T).
-                for _ in range(2):
-                    lines = [line / line.norm() for line in map(values.col, range(values.cols)) if line.norm() != 0]
-                    values = sp.Matrix.hstack(*lines).T if len(lines) > 0 else sp.zeros(0, 0)
-                # The square of the product of singular values: rounding leaves less of a rank that is not full.
-                product = values.T * values if values.rows >= values.cols else sp.zeros(1, 1)
-                if values.cols == width and abs(product.det()) > sp.Float(10, DIGITS) ** (-DIGITS // 2):
-                    return self.say(f"identifiability: {kind}", "proved")
-        return self.say(f"identifiability: {kind}", "FALSE", ": the regressor has no full rank at twelve points")
+        self.full_rank(f"identifiability: {kind}", self.width if kind == "excitation" else 1, ())
+
+    def full_rank(self, claim, orders, constant):
+        """Says whether the regressor, with its derivatives below an order, has full rank on each cell that is not listed."""
+        rates, blind = [*self.plant.rates.values()], self.motion.get("blind", [])
+        cells = [entry for entry in blind if not entry.keys() & {"zero", "constant", "rest"}]
+        looked = [*self.regressor, *(self.primitive or []), *rates, *self.h, *self.Lambda, *self.plant.identities]
+        texts = [*flat([entry.get("positive", []) for entry in cells])]
+        symbols = set().union(*(self.plant.valued(e).free_symbols for e in [*looked, *formulas(texts)]))
+        patterns, points = {}, self.sets.met(symbols - {*self.plant.given} - {*self.at_start})
+        least = DRAWN if any(e.has(*BENT) for e in looked) else 1
+        for drawn in range(least + OF_CELL):
+            if drawn >= least and all(full or listed for _, _, full, listed in patterns.values()):
+                break
+            point = next(points, None)
+            if point is None:
+                return self.say(claim, "undecided", ": no point was met at which the assumptions hold")
+            point |= self.plant.outputs(point)
+            try:
+                cell = Cell(point)
+                smooth = tuple(cell.smooth(self.plant.valued(e)) for e in looked)
+                listed = any(self.sets.holds(entry, point) for entry in cells)
+                if cell.on_border:
+                    continue
+                if (smooth, listed) not in patterns:
+                    patterns[smooth, listed] = [point, Rows(self, cell, constant), False, listed]
+                entry = patterns[smooth, listed]
+                if not entry[2] and not listed:
+                    entry[2] = entry[1].at(point, orders)[1] == self.width
+            except NoValue:
+                continue
+        if not patterns:
+            return self.say(claim, "undecided", ": the regressor has a value at no point that was met")
+        for point, rows, full, listed in patterns.values():
+            if not full and not listed:
+                return self.say(claim, "FALSE", f": the regressor has no full rank around {self.shown(point)}")
+        if all(listed for *_, listed in patterns.values()) and not self.together(patterns, orders):
+            return self.say(claim, "FALSE", ": the cells have no full rank together")
+        return self.say(claim, "proved")
+
+    def together(self, patterns, orders):
+        """Whether the rows at points of all cells have full rank."""
+        values = []
+        for point, rows, *_ in patterns.values():
+            with contextlib.suppress(NoValue):
+                values += rows.at(point, orders)[0]
+        return bool(values) and rank(values) == self.width
+
+    def trajectories(self):
+        """What is said of equilibria and of other trajectories, at points of these: one that contradicts it refutes it."""
+        if self.motion.get("by itself"):
+            self.full_rank("identified with constant inputs", self.width, self.plant.u)
+        blind = self.motion.get("blind", [])
+        exceptions = blind + self.motion.get("undecided", [])
+        if self.motion.get("at rest"):
+            self.at_rest("identified at rest", exceptions)
+        for entry in blind:
+            self.blind(f"while {entry['while']}", entry)
+
+    def at_rest(self, claim, exceptions):
+        self.sets.all, full, listed = True, 0, 0
+        for point, rows in self.sets.of({"rest": True}):
+            if any(self.sets.holds(entry, point) for entry in exceptions):
+                listed += 1
+            elif rows.at(point, self.width)[1] < self.width:
+                return self.say(claim, "FALSE", f": no full rank at {self.shown(point)}")
+            else:
+                full += 1
+        if full == 0 and listed > 0 and self.sets.all:
+            return self.say(claim, "FALSE", ": each equilibrium that was met is an exception")
+        return self.say(claim, *(("holds", f" at {full} points") if full else ("not checked", ": no point was met")))
+
+    def blind(self, claim, entry):
+        """On the trajectories of a condition some directions are hidden, and these combinations are identified."""
+        plant, unknowns = self.plant, self.z if self.is_linear else [NAMES[name] for name in self.derived["eta"]]
+        hidden = [[plant.valued(e).xreplace(self.at_start) for e in formulas(d)] for d in entry.get("hidden", [])]
+        seen = [
+            [sp.diff(plant.valued(e), unknown).xreplace(self.at_start) for unknown in unknowns]
+            for e in formulas(entry.get("identified", []))
+        ]
+        looked = 0
+        for point, rows in self.sets.of(entry):
+            try:
+                values, known = rows.at(point, self.width)
+                directions = [[value(e, point) for e in direction] for direction in hidden]
+                gradients = [[value(e, point) for e in gradient] for gradient in seen]
+            except (NoValue, ZeroDivisionError):
+                continue
+            looked += 1
+            wrong = None
+            if any(not self.orthogonal(row, direction) for row in values for direction in directions):
+                wrong = "a direction is not hidden"
+            elif known == self.width:
+                wrong = "all unknowns are identified"
+            elif gradients and rank(values + gradients) > known:
+                wrong = "a combination is not identified"
+            elif known + len(hidden) != self.width:
+                wrong = f"the rank is {known}"
+            elif len(hidden) + len(seen) != self.width or rank(directions) + (rank(gradients) if seen else 0) != self.width:
+                wrong = "directions and combinations are not all of the unknowns"
+            if wrong:
+                return self.say(claim, "FALSE", f": {wrong} at {self.shown(point)}")
+        self.say(claim, *(("holds", f" at {looked} points") if looked else ("not checked", ": no point was met")))
+
+    @staticmethod
+    def orthogonal(row, direction):
+        products = [a * b for a, b in zip(row, direction)]
+        total = abs(sum(products))
+        return total == 0 or not total.is_Rational and total < SMALL * max(map(abs, products))
+
+    def shown(self, point):
+        moving = [*self.plant.x, *self.plant.y, *self.plant.u, *self.plant.w, *sorted(self.parameters, key=str)]
+        return ", ".join(f"{symbol} = {sp.N(point[symbol], 8)!s}" for symbol in moving if symbol in point)
 
     def prove(self):
-        for claim in (self.cascade, self.left_inverse, self.regression, self.identifiability):
+        for claim in (self.cascade, self.left_inverse, self.regression, self.identifiability, self.trajectories):
             try:
                 claim()
             except ValueError as error:

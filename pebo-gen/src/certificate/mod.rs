@@ -1,13 +1,16 @@
 //! The certificate of an accepted model: a Python script that proves its claims again with `SymPy`, and without pebo.
 //!
 //! In: the model as it was written, and its derivation. Out: a script of two parts, the formulas as texts in the model
-//! file's grammar and `checker.py`, which reads and proves them. The plant is restated from the author's own formulas,
+//! file's grammar and `checker.py`, which reads and proves them; what the verdict says of trajectories it looks at in
+//! points of them. The plant is restated from the author's own formulas,
 //! also where it is written by class, so that a mistake of pebo's in reading, expanding or proving it is found.
 
 mod python;
 
 use pebo_cas::{Expr, Symbol};
-use pebo_design::analysis::{Derivation, Excitation, RegressionKind, Trajectories};
+use pebo_design::analysis::{
+    BlindTrajectory, Derivation, Excitation, RegressionKind, Trajectories, TrajectoryCondition,
+};
 use pebo_design::model::class::Matrix;
 use pebo_design::model::{Class, Entry, Formula, Model};
 use pebo_design::plant::Plant;
@@ -32,7 +35,8 @@ pub(crate) fn certificate(model: &Model, plant: &Plant, derivation: &Derivation)
          \n    pip install sympy\n    python3 {name}.py\n\
          \n\
          PLANT is what its author wrote; DERIVED is what pebo-gen made of it. Exit status 0: every claim is proved;\n\
-         1: a claim is false, and a point shows it; 2: SymPy could decide neither.\n\
+         1: a claim is false, and a point shows it; 2: SymPy could decide neither. What is said of trajectories is\n\
+         looked at in points of them: one may show that it is false, and none proves it.\n\
          \"\"\"\n"
     );
     let part = |name: &str, literal: &Literal| {
@@ -86,12 +90,15 @@ fn stated(model: &Model) -> Literal {
             (Class::ELECTROMECHANICAL, parts)
         }
     });
+    // The last input is then the time.
+    let time = model.time.and(model.u.last());
     let mut parts = vec![
         ("parameters", Literal::Dict(model.parameters.iter().map(parameter).collect())),
         ("x", names(&model.x)),
         ("y", names(&model.y)),
         ("u", names(&model.u)),
         ("w", names(&model.w)),
+        ("time", time.map_or(Literal::None, |name| Literal::text(&name.value))),
         ("define", named(&model.define)),
         ("assume", Literal::texts(&model.assume)),
         ("identities", texts(&model.identities)),
@@ -132,9 +139,6 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
         RegressionKind::Static | RegressionKind::Implicit => Literal::None,
     };
     let kind = match identifiability.kind {
-        Excitation::Excitation if identifiability.trajectories.as_ref().is_some_and(Trajectories::is_divided) => {
-            "parts"
-        }
         Excitation::Instant => "instant",
         Excitation::Excitation => "excitation",
         Excitation::Never => "never",
@@ -177,9 +181,88 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
         ),
         ("theta of eta", texts(&regression.theta)),
         ("identifiability", Literal::text(kind)),
+        ("trajectories", identifiability.trajectories.as_ref().map_or(Literal::None, |t| trajectories(plant, t))),
         ("determinant of phi_1' phi_1", determinant.unwrap_or(Literal::None)),
         ("conditions", Literal::texts(conditions)),
     ]))
+}
+
+/// What is said of the motion that the unknowns need. What is undecided is no claim, but an exception of one.
+fn trajectories(plant: &Plant, trajectories: &Trajectories) -> Literal {
+    let text = |expr: Expr| Literal::text(&plant.arena.print(expr));
+    let texts = |exprs: &[Expr]| Literal::List(exprs.iter().copied().map(text).collect());
+    let (open, decided): (Vec<_>, Vec<_>) = trajectories.blind.iter().partition(|blind| blind.hidden.is_empty());
+    let statement = |blind: &BlindTrajectory| {
+        let mut parts = vec![("while", Literal::text(&blind.condition(plant)))];
+        parts.extend(Conditions::of(plant, &blind.condition).literals(plant));
+        parts.push(("identified", texts(&blind.identifiable)));
+        parts.push(("hidden", Literal::List(blind.hidden.iter().map(|direction| texts(direction)).collect())));
+        dict(parts)
+    };
+    let exception = |blind: &BlindTrajectory| dict(Conditions::of(plant, &blind.condition).literals(plant));
+    dict(vec![
+        ("by itself", trajectories.by_itself.map_or(Literal::None, Literal::Truth)),
+        ("at rest", Literal::Truth(trajectories.at_rest)),
+        ("blind", Literal::List(decided.into_iter().map(statement).collect())),
+        ("undecided", Literal::List(open.into_iter().map(exception).collect())),
+    ])
+}
+
+/// A condition of trajectories in its parts, which all hold.
+#[derive(Default)]
+struct Conditions {
+    /// Formulas that are zero.
+    zero: Vec<Expr>,
+    /// Formulas that are positive.
+    positive: Vec<Expr>,
+    /// Inputs that are constant.
+    constant: Vec<Symbol>,
+    /// Whether the plant is at an equilibrium, if that is said.
+    rest: Option<bool>,
+}
+
+impl Conditions {
+    fn of(plant: &Plant, condition: &TrajectoryCondition) -> Self {
+        let arena = &plant.arena;
+        let at_value = |symbol: Symbol, value: Expr| vec![arena.sub(arena.of_symbol(symbol), value)];
+        match condition {
+            TrajectoryCondition::Equilibrium(zeros) => {
+                Self { zero: zeros.clone(), rest: Some(true), ..Self::default() }
+            }
+            TrajectoryCondition::UndecidedAtRest(zero) => {
+                Self { zero: vec![*zero], rest: Some(true), ..Self::default() }
+            }
+            TrajectoryCondition::Constant(inputs) => Self { constant: inputs.clone(), ..Self::default() },
+            TrajectoryCondition::Value(input, value) => Self { zero: at_value(*input, *value), ..Self::default() },
+            TrajectoryCondition::Steady(symbol, value) => Self {
+                zero: at_value(*symbol, *value),
+                constant: plant.commanded().filter(|input| input != symbol).collect(),
+                ..Self::default()
+            },
+            TrajectoryCondition::Zero(zeros) => Self { zero: zeros.clone(), rest: Some(false), ..Self::default() },
+            TrajectoryCondition::Undecided(zero) => Self { zero: vec![*zero], ..Self::default() },
+            TrajectoryCondition::Cell(sides) => {
+                let positive = sides.iter().map(|(divider, side)| side.positive(arena, *divider)).collect();
+                Self { positive, ..Self::default() }
+            }
+            TrajectoryCondition::Within(sides, condition) => {
+                let mut inner = Self::of(plant, condition);
+                inner.positive.extend(sides.iter().map(|(divider, side)| side.positive(arena, *divider)));
+                inner
+            }
+        }
+    }
+
+    fn literals(&self, plant: &Plant) -> Vec<(&'static str, Literal)> {
+        let arena = &plant.arena;
+        let texts = |exprs: &[Expr]| Literal::texts(exprs.iter().map(|expr| arena.print(*expr)));
+        vec![
+            ("zero", texts(&self.zero)),
+            ("positive", texts(&self.positive)),
+            ("constant", Literal::texts(self.constant.iter().map(|input| arena.name(*input)))),
+            ("rest", self.rest.map_or(Literal::None, Literal::Truth)),
+        ]
+    }
 }
 
 /// A dictionary without empty values.

@@ -6,6 +6,7 @@ const WIDTH: usize = 120;
 /// A literal.
 pub(super) enum Literal {
     None,
+    Truth(bool),
     Text(String),
     List(Vec<Literal>),
     Dict(Vec<(String, Literal)>),
@@ -31,7 +32,7 @@ impl Literal {
     pub(super) fn is_empty(&self) -> bool {
         match self {
             Self::None => true,
-            Self::Text(_) => false,
+            Self::Truth(_) | Self::Text(_) => false,
             Self::List(items) => items.is_empty(),
             Self::Dict(entries) => entries.is_empty(),
         }
@@ -47,7 +48,7 @@ impl Literal {
         let margin = " ".repeat(inner);
         let each = |text: String| format!("{margin}{text},\n");
         match self {
-            Self::None | Self::Text(_) => line,
+            Self::None | Self::Truth(_) | Self::Text(_) => line,
             Self::List(items) => {
                 let lines: String = items.iter().map(|item| each(item.layout(inner, inner))).collect();
                 format!("[\n{lines}{}]", " ".repeat(indent))
@@ -66,6 +67,7 @@ impl Literal {
     fn line(&self) -> String {
         match self {
             Self::None => "None".to_owned(),
+            Self::Truth(truth) => if *truth { "True" } else { "False" }.to_owned(),
             Self::Text(text) => quoted(text),
             Self::List(items) => format!("[{}]", items.iter().map(Self::line).collect::<Vec<_>>().join(", ")),
             Self::Dict(entries) => {

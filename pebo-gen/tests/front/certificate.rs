@@ -13,7 +13,7 @@ fn certificate(text: &str) -> (Standing, Option<String>) {
 /// The script before its common part.
 fn stated(text: &str) -> String {
     let script = certificate(text).1.expect("it is accepted");
-    let (stated, checker) = script.split_once("\nimport random\n").expect("a checker");
+    let (stated, checker) = script.split_once("\nimport contextlib\n").expect("a checker");
     assert!(checker.contains("sys.exit"));
     stated.to_owned()
 }
@@ -47,6 +47,23 @@ fn a_class_is_restated_by_its_matrices() {
     );
     let line = "    \"mechanical\": {\"M\": \"m1\", \"G\": [\"1\"], \"V\": \"k*q^2/2\"},";
     assert!(stated.lines().any(|have| have == line) && !stated.contains("f_x"), "{stated}");
+}
+
+#[test]
+fn what_is_said_of_trajectories_is_stated_as_data() {
+    // Nothing is seen while a < 0.
+    let half = stated("model: m\nx: [k]\ny: [r]\nu: [a]\nf_x: {k: 0}\nf_y: {r: 'k*max(0, a)'}\nphi: [1/k]\n");
+    let cell = "{\"while\": \"a < 0\", \"positive\": [\"-a\"], \"hidden\": [[\"1\"]]}";
+    assert!(half.contains("\"identifiability\": \"excitation\"") && half.contains(cell), "{half}");
+    // At rest one sum alone is seen, and with a constant input all is.
+    let battery =
+        stated("model: m\nx: [s, h]\ny: [V]\nu: [I]\nf_x: {s: I, h: -abs(I)*h}\nf_y: {V: s + h}\nphi: [s, h]\n");
+    let rest = "\"rest\": True, \"identified\": [\"z1 + z2\"], \"hidden\": [[\"-1\", \"1\"]]}";
+    let motion = "\"by itself\": True,\n        \"at rest\": False,";
+    assert!(battery.contains(rest) && battery.contains(motion), "{battery}");
+    // Of what is undecided nothing is claimed.
+    let motor = stated(include_str!("../../../models/motor_flux.yaml"));
+    assert!(motor.contains("\"undecided\": [{\"zero\": [\"omega\"]}]"), "{motor}");
 }
 
 #[test]
