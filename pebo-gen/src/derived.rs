@@ -67,9 +67,19 @@ impl Derived {
             let derivation = Derivation::derive(&plant);
             return Ok(Self { model, plant, derivation });
         }
+        if let Some(derivation) = Derivation::of_contradiction(&plant) {
+            return Ok(Self { model, plant, derivation });
+        }
         let mut search = search::solve(&plant, plant.cascade_class);
-        if search.verdict == SearchVerdict::Found && !search.candidates.is_empty() {
-            let best = search.candidates.swap_remove(0);
+        let best = match search.verdict {
+            SearchVerdict::Found => (!search.candidates.is_empty()).then_some(0),
+            // A transform that hides states is a proof that every other one does.
+            SearchVerdict::None | SearchVerdict::Undecided => {
+                search.candidates.iter().position(search::Candidate::hides_states)
+            }
+        };
+        if let Some(best) = best {
+            let best = search.candidates.swap_remove(best);
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }
         let names = (model.x.first(), model.x.last());

@@ -1,6 +1,6 @@
 //! Searches without a transform, or without one that is found.
 
-use pebo_gen::analysis::Class;
+use pebo_gen::analysis::{Class, Outcome};
 use pebo_gen::search::{BoundClass, SearchVerdict};
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Request, Standing, answer, solve};
@@ -234,5 +234,50 @@ fn an_unmeasured_signal_is_no_component() {
     ] {
         let (_, found) = search(lines, None);
         assert_ne!(found.verdict, SearchVerdict::Found, "{lines}");
+    }
+}
+
+/// The codes of the refusal of a model, and its notes.
+fn refused(lines: &str) -> (Vec<Code>, String) {
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).unwrap();
+    let derived = pebo_gen::derive(&source).unwrap();
+    assert_eq!(derived.derivation.outcome, Outcome::Rejected, "{lines}");
+    let codes = derived.derivation.diagnostics.iter().map(|d| d.code).collect();
+    (codes, derived.derivation.diagnostics.iter().flat_map(|d| d.notes.clone()).collect::<Vec<_>>().join("; "))
+}
+
+#[test]
+fn states_that_no_output_shows_are_refused_as_with_a_transform() {
+    for (plant, phi, shown) in [
+        (
+            "parameters: [J]\nx: [load, bias]\ny: [omega]\nu: [tau]\nf_x: {load: 0, bias: 0}\n\
+             f_y: {omega: (tau + bias - load)/J}",
+            "load, bias",
+            "of `load`, `bias` the outputs show only `bias - load`",
+        ),
+        (
+            "parameters: {a: 2, b: 2}\nx: [p, q]\ny: [v]\nf_x: {p: -a*p, q: -b*q}\nf_y: {v: p + q}",
+            "p, q",
+            "of `p`, `q` the outputs show only `p + q`",
+        ),
+        (
+            "x: [a, b, c]\ny: [r]\nu: [v]\nf_x: {a: 0, b: 0, c: 0}\nf_y: {r: v*(a + 2*b) - r}",
+            "a, b, c",
+            "of `a`, `b`, `c` the outputs show only `a/2 + b`",
+        ),
+    ] {
+        for lines in [plant.to_owned(), format!("{plant}\nphi: [{phi}]")] {
+            let (codes, notes) = refused(&lines);
+            assert_eq!(codes, [Code::NeverIdentifiable], "{lines}");
+            assert!(notes.contains(shown), "{notes}");
+        }
+    }
+}
+
+#[test]
+fn a_plant_that_contradicts_itself_is_refused_before_any_search() {
+    let plant = "x: [v]\ny: [s]\nf_x: {v: 0}\nf_y: {s: 2*v}\ng_y: {s: 3*v}";
+    for lines in [plant.to_owned(), format!("{plant}\nphi: [v]")] {
+        assert_eq!(refused(&lines).0, [Code::IdentityRefuted], "{lines}");
     }
 }

@@ -86,6 +86,14 @@ impl Derivation {
         }
     }
 
+    /// The refusal of a plant whose identities contradict it, whatever its transform is; none if they do not, or that
+    /// is undecided.
+    pub fn of_contradiction(plant: &Plant) -> Option<Self> {
+        let mut found = Vec::new();
+        let verdict = identities::prove(plant, &plant.domain(), &mut found);
+        (verdict == Verdict::Refuted).then(|| Self::without_claims(verdict, found))
+    }
+
     /// The empty derivation of a plant without a transform.
     pub fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
         Self::without_claims(Verdict::Undecided, diagnostics)

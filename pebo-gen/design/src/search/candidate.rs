@@ -1,6 +1,6 @@
 //! A transform that was found, with its derivation.
 
-use crate::analysis::{Class, Derivation, Excitation, Outcome};
+use crate::analysis::{Class, Derivation, Excitation, Outcome, Verdict};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::{Arena, Expr};
@@ -32,6 +32,18 @@ impl Candidate {
     /// Tests whether the rates of the outputs are a linear regression for theta itself.
     pub fn is_linear(&self) -> bool {
         self.derivation.regression.result.as_ref().is_some_and(|regression| regression.is_linear(&self.plant))
+    }
+
+    /// Tests whether it proves that no transform serves: it recovers all states without a redundant component, and the
+    /// outputs do not depend on a direction of its unknowns.
+    pub fn hides_states(&self) -> bool {
+        let is_proved = |verdict| verdict == Verdict::Proved;
+        is_proved(self.derivation.cascade.verdict)
+            && is_proved(self.derivation.left_inverse.verdict)
+            && is_proved(self.derivation.regression.verdict)
+            && self.derivation.identifiability.verdict == Verdict::Refuted
+            && self.plant.phi.len() == self.plant.x.len()
+            && self.recovered() == self.plant.x.len()
     }
 
     /// The number of recovered states.

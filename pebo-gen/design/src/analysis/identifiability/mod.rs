@@ -12,10 +12,11 @@ mod crossing;
 mod divided;
 mod excitation;
 mod flow;
+mod never;
 mod singular;
 
-use crate::plant::{Class, Plant};
-use crate::source::{Code, Diagnostic, Span};
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic};
 use pebo_cas::domain::reducible::reducible;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
@@ -24,10 +25,10 @@ use pebo_cas::{Arena, Domain, Expr, Symbol};
 
 use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
+use self::never::never;
 use self::singular::{Volume, ZeroSet};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
-use super::pencil;
 
 /// Decides how the unknowns are identified.
 pub(super) fn prove(
@@ -204,7 +205,7 @@ fn where_analytic(
         found.push(doubt);
         return Claim { verdict: Verdict::Undecided, result: None }.into();
     }
-    let refusal = never(plant, domain, &direction, regression, left_inverse);
+    let refusal = never(plant, domain, &hidden.directions, regression, left_inverse);
     found.push(if hidden.special_values {
         refusal.note("this holds for the given values of the parameters, not for general values")
     } else {
@@ -344,52 +345,4 @@ pub(super) fn not_all_used(plant: &Plant) -> Diagnostic {
     )
     .note("this regression does not identify all unknowns, but it leaves outputs or identities of the plant unused")
     .help("measure another output, or write what relates phi to the outputs under `identities`")
-}
-
-fn never(
-    plant: &Plant,
-    domain: &Domain,
-    direction: &[Expr],
-    regression: &Regression,
-    left_inverse: Option<&LeftInverse>,
-) -> Diagnostic {
-    let arena = &plant.arena;
-    let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
-    let linear = regression.eta.iter().all(|e| arena.as_symbol(*e).is_some_and(|s| plant.theta.contains(&s)));
-    let unknown = if linear { "theta" } else { "eta" };
-    let moving = regression.eta.iter().zip(direction).filter(|(_, d)| linear && !arena.is_zero(**d));
-    let component = |e: Expr| plant.theta.iter().position(|theta| arena.as_symbol(e) == Some(*theta));
-    let moving: Vec<Span> = moving.filter_map(|(e, _)| Some(plant.phi.get(component(*e)?)?.span)).collect();
-    let (first, others) = moving.split_first().map_or((at_phi(plant), &[][..]), |(first, rest)| (*first, rest));
-    let diagnostic =
-        Diagnostic::error(Code::NeverIdentifiable, first, format!("no input and no trajectory identifies {unknown}"));
-    let diagnostic =
-        others.iter().fold(diagnostic, |diagnostic, other| diagnostic.also(*other, "together with this component"));
-    let mut diagnostic =
-        diagnostic.label(format!("the outputs do not change when {unknown} moves along ({})", entries.join(", ")));
-    if linear && let Some(left_inverse) = left_inverse {
-        let harmless = left_inverse.x.iter().all(|(_, formula)| {
-            let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));
-            decide(arena, arena.sum(slope), domain).is_zero()
-        });
-        diagnostic = diagnostic.note(if harmless {
-            "the states do not change along this direction: phi_left cancels it, so x is recoverable although theta is not"
-        } else {
-            "the states change along this direction, so x cannot be recovered either"
-        });
-        if harmless {
-            return diagnostic.help("drop the redundant components of phi");
-        }
-    }
-    let blind = match &plant.class {
-        Some(Class::Linear(linear)) => pencil::unobservable_states(plant, domain, linear).ok().flatten(),
-        _ => None,
-    };
-    match blind {
-        Some(blind) => diagnostic
-            .note(blind)
-            .note("the cascade exists, but theta needs an observable plant (Proposition 2, claims C2 and C3)")
-            .help("measure another output"),
-        None => diagnostic.help("measure another output, or choose another phi"),
-    }
 }
