@@ -208,8 +208,10 @@ class Answer:
             if found["kind"] == "instant" and rank(rows[: len(plant.rows)]) < n:
                 self.looked["cell that an equation lists, as it holds in all of it"] += excepted(names)
                 self.wrong += [] if excepted(names) else [f"UNSOUND: instant, but of a lower rank at {here}"]
-            if found["kind"] == "excitation" and rank(rows) < n and not cells:
-                self.wrong.append(f"UNSOUND: identified, but not at {here}, which no cell covers")
+            # A point that was drawn may lie on a wall that is listed.
+            is_listed = any(covers(parts, names) for parts, _ in listed)
+            if found["kind"] == "excitation" and rank(rows) < n and not is_listed:
+                self.wrong.append(f"UNSOUND: identified, but not at {here}, which nothing that is listed covers")
             for parts, hidden in cells if self.said["regression"]["eta"] == [f"theta{i + 1}" for i in range(n)] else ():
                 try:
                     directions = [[value(e, names).terms[0] for e in direction] for direction in hidden]

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::printed;
 use pebo_cas::Arena;
 use pebo_design::plant::Plant;
-use pebo_design::search::words::assumed;
+use pebo_design::search::words::declared;
 use pebo_design::search::{Bound, Candidate, Search};
 use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
 
@@ -20,7 +20,7 @@ pub struct SearchReport {
     /// `found`, `none` or `undecided`.
     pub verdict: &'static str,
     candidates: Vec<CandidateReport>,
-    /// The transform that would be accepted if some states were positive, if none is accepted as it is.
+    /// The transform that would be accepted with a declaration, if none is accepted as it is.
     assumed: Option<AssumedReport>,
     bound: Option<BoundReport>,
     /// The bound for transforms affine in x, if it is small.
@@ -33,10 +33,13 @@ pub struct SearchReport {
     diagnostics: Vec<LocatedDiagnostic>,
 }
 
-/// Signs of states, and the transform that would be accepted with them.
+/// A declaration, and the transform that would be accepted with it.
 #[derive(Clone, Debug, Serialize)]
 struct AssumedReport {
+    /// The signs of states, if it is these.
     assume: Vec<String>,
+    /// The lines of the model file.
+    declare: String,
     phi: Vec<String>,
 }
 
@@ -77,8 +80,9 @@ impl SearchReport {
             model: plant.name.clone(),
             verdict: search.verdict.word(),
             candidates: search.candidates.iter().map(candidate).collect(),
-            assumed: search.assumed.as_ref().map(|(candidate, signs)| AssumedReport {
-                assume: signs.iter().map(|state| format!("{} > 0", plant.arena.name(*state))).collect(),
+            assumed: search.declared.as_ref().map(|(candidate, declaration)| AssumedReport {
+                assume: declaration.assumed(&plant.arena),
+                declare: declaration.lines(&plant.arena).replace('`', ""),
                 phi: candidate.formulas(),
             }),
             bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),
@@ -152,8 +156,8 @@ pub fn search_summary(plant: &Plant, search: &Search) -> String {
     for candidate in &search.candidates {
         text.extend([super::text::summary(&candidate.plant, &candidate.derivation).as_str()]);
     }
-    if let Some((candidate, signs)) = &search.assumed {
-        text.extend([format!("  {}\n", assumed(candidate, signs))]);
+    if let Some((candidate, declaration)) = &search.declared {
+        text.extend([format!("  {}\n", declared(candidate, declaration))]);
     }
     for bound in search.bounds() {
         text.extend([format!("  bound: {}\n", bound.sentence(&plant.arena))]);

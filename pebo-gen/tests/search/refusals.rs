@@ -275,6 +275,28 @@ fn states_that_no_output_shows_are_refused_as_with_a_transform() {
 }
 
 #[test]
+fn a_declaration_with_which_a_transform_is_accepted_is_found_by_trying() {
+    let hall = "parameters: {A: 1}\nx: [q, w, o1, o2]\ny: [h1, h2]\nf_x: {q: w, w: 0, o1: 0, o2: 0}\n\
+                g_y: {h1: A*sin(q) + o1, h2: A*cos(q) + o2}";
+    let converter = "parameters: {L: 0.01, C: 1e-4, E: 12, r: 0.5, R: 50}\nx: [i]\ny: [v]\nu: [d]\n\
+                     f_x: {i: (-r*i - (1 - d)*v + E)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}\nclass: pebo";
+    for (lines, expected) in [(hall, "`angles: {q: 2*pi}`"), (converter, "no `class`")] {
+        let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).unwrap();
+        let derived = pebo_gen::derive(&source).unwrap();
+        let refusal = &derived.derivation.diagnostics[0];
+        assert_eq!(refusal.code, Code::TransformNotFound, "{lines}");
+        assert!(refusal.notes.iter().any(|note| note.starts_with(&format!("with {expected}, phi = ["))), "{refusal:?}");
+        // With the line it is accepted.
+        let with = match expected {
+            "no `class`" => lines.replace("\nclass: pebo", ""),
+            line => format!("{lines}\n{}", line.replace('`', "")),
+        };
+        let source = Source::new("m.yaml", format!("model: m\n{with}\n")).unwrap();
+        assert_eq!(pebo_gen::derive(&source).unwrap().derivation.outcome, Outcome::Accepted, "{with}");
+    }
+}
+
+#[test]
 fn a_plant_that_contradicts_itself_is_refused_before_any_search() {
     let plant = "x: [v]\ny: [s]\nf_x: {v: 0}\nf_y: {s: 2*v}\ng_y: {s: 3*v}";
     for lines in [plant.to_owned(), format!("{plant}\nphi: [v]")] {

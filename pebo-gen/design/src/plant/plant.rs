@@ -200,6 +200,15 @@ impl Plant {
         plant
     }
 
+    /// The same plant where these states are angles of the period.
+    #[must_use]
+    pub fn with_angles(&self, angles: &[(Symbol, Expr)]) -> Self {
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut plant = self.clone();
+        plant.angles.extend(angles.iter().map(|(state, period)| (*state, Formula { expr: *period, span })));
+        plant
+    }
+
     /// The components of the transform.
     pub fn transform(&self) -> Vec<Expr> {
         self.phi.iter().map(|f| f.expr).collect()

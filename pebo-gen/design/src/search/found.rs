@@ -1,10 +1,10 @@
 //! The result of a search, as values.
 
-use pebo_cas::Symbol;
 use pebo_cas::tower::Obstacle;
 
 use super::bounds::Bound;
 use super::candidate::Candidate;
+use super::declaration::Declaration;
 
 /// The result of a search.
 #[derive(Debug)]
@@ -13,8 +13,8 @@ pub struct Search {
     pub verdict: SearchVerdict,
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
-    /// A transform that would be accepted if these states were positive, where none is accepted as it is.
-    pub assumed: Option<(Candidate, Vec<Symbol>)>,
+    /// A transform that would be accepted with a declaration, where none is accepted as it is.
+    pub declared: Option<(Candidate, Declaration)>,
     /// The bound on the rank of dphi/dx for transforms with a plain cascade, where the search computed it: for smooth
     /// ones; where that says nothing, as of every plant without inputs, for those affine in x.
     pub bound: Option<Bound>,

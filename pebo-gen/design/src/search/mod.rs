@@ -22,6 +22,7 @@ mod choice;
 mod closure;
 mod completion;
 mod continuous;
+mod declaration;
 mod found;
 mod frame;
 mod functions;
@@ -34,9 +35,9 @@ use std::collections::BTreeSet;
 
 use crate::analysis::{Class, Derivation, Verdict};
 use crate::plant::{Plant, TransformOrigin};
+use pebo_cas::Expr;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Expr, Relation, Symbol};
 
 use ansatz::{Ansatz, Rate};
 use bounds::LARGEST_ORDER;
@@ -44,6 +45,7 @@ pub use bounds::{Bound, BoundClass, Evidence};
 pub use candidate::Candidate;
 use completion::connection::Connection;
 use continuous::{continuous, is_of_states_and_outputs};
+pub use declaration::Declaration;
 pub use found::{Attempt, Form, Search, SearchVerdict, Start};
 pub use frame::{Block, blocks};
 use problem::Problem;
@@ -66,25 +68,8 @@ pub use words::settles;
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let problem = Problem::of(plant);
-    let mut attempts = Attempts::new(&problem);
-    // The transform of the plant's class may leave nothing better to be expected.
-    let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
-    attempts.candidates.extend(own);
-    attempts.run(class);
-    // An output may determine a state, with all of its noise: transforms that filter it were looked for first.
-    for reduced in Problem::with_measured_states(plant) {
-        if attempts.is_full() || !reduced.goes_on() {
-            break;
-        }
-        let mut others = Attempts::new(&reduced);
-        others.run(class);
-        attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
-    }
-    let (mut candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
-    if let Some(class) = class {
-        candidates.retain(|candidate| candidate.derivation.class == class);
-    }
-    candidates.sort_by_cached_key(Candidate::merit);
+    let mut attempts = attempted(&problem, class);
+    let (candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
     let found = candidates.first().is_some_and(Candidate::is_full);
     let plain = found && candidates.first().is_some_and(|c| c.derivation.class == Class::Pebo);
     let (affine, bound) = if plain || class == Some(Class::Gpebo) {
@@ -122,8 +107,40 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         (false, true) => SearchVerdict::None,
         (false, false) => SearchVerdict::Undecided,
     };
-    let assumed = if found { None } else { with_signs(&problem, &candidates) };
-    Search { verdict, candidates, assumed, bound, affine, generalised, tried }
+    let is_open = !found && !candidates.iter().any(Candidate::hides_states);
+    let declared = if is_open { declaration::helpful(&problem, &candidates, class) } else { None };
+    Search { verdict, candidates, declared, bound, affine, generalised, tried }
+}
+
+/// The attempts of a class or of any, with their candidates in order of merit.
+fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> Attempts<'a> {
+    let plant = problem.plant;
+    let mut attempts = Attempts::new(problem);
+    // The transform of the plant's class may leave nothing better to be expected.
+    let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
+    attempts.candidates.extend(own);
+    attempts.run(class);
+    // An output may determine a state, with all of its noise: transforms that filter it were looked for first.
+    for reduced in Problem::with_measured_states(plant) {
+        if attempts.is_full() || !reduced.goes_on() {
+            break;
+        }
+        let mut others = Attempts::new(&reduced);
+        others.run(class);
+        attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
+    }
+    if let Some(class) = class {
+        attempts.candidates.retain(|candidate| candidate.derivation.class == class);
+    }
+    attempts.candidates.sort_by_cached_key(Candidate::merit);
+    attempts
+}
+
+/// The best transform of a plant, if one is accepted that recovers all states.
+fn accepted(plant: &Plant, class: Option<Class>) -> Option<Candidate> {
+    let problem = Problem::of(plant);
+    let candidates = attempted(&problem, class).candidates;
+    candidates.into_iter().next().filter(Candidate::is_full)
 }
 
 /// The transform that the plant's class gives: coils have their fluxes.
@@ -135,26 +152,6 @@ fn of_class(plant: &Plant) -> Option<Candidate> {
 /// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
 fn affine_rates(problem: &Problem<'_>, others: usize) -> Option<Bound> {
     bounds::bound(problem, BoundClass::AffineRate, (LARGEST_ORDER, others))
-}
-
-/// The first transform that recovers the states if states without a known sign are positive.
-fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candidate, Vec<Symbol>)> {
-    let arena = problem.arena;
-    let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
-    let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
-    let unknown = |state: &Symbol| {
-        let state = arena.of_symbol(*state);
-        ![state, arena.neg(state)].iter().any(|e| problem.domain.implies(arena, *e, Relation::Positive))
-    };
-    let signs: Vec<Symbol> = problem.x.iter().copied().filter(unknown).collect();
-    if signs.is_empty() || !problem.goes_on() {
-        return None;
-    }
-    let plant = problem.plant.with_positive(&signs);
-    let problem = Problem::of(&plant);
-    let budget = arena.budget();
-    let candidate = budget.share(2, || Candidate::of(&problem, &candidate.plant.transform()));
-    candidate.is_full().then_some((candidate, signs))
 }
 
 /// The order of series that costs less than another form of transforms.

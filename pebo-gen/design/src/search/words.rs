@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 use crate::analysis::{Class, Derivation, Origin, Outcome};
 use crate::plant::{self, Plant};
 use crate::source::{Code, Diagnostic, Span, counted, listed};
-use pebo_cas::{Arena, Expr, Symbol};
+use pebo_cas::{Arena, Expr};
 
 use super::bounds::{Bound, BoundClass, Evidence};
 use super::candidate::Candidate;
+use super::declaration::Declaration;
 use super::found::{Attempt, Form, Search, SearchVerdict, Start};
 use super::frame::{Block, blocks};
 
@@ -225,8 +226,8 @@ impl Search {
         for candidate in self.nearest().take(2) {
             diagnostic = diagnostic.note(candidate.sentence());
         }
-        if let Some((candidate, signs)) = &self.assumed {
-            diagnostic = diagnostic.note(assumed(candidate, signs));
+        if let Some((candidate, declaration)) = &self.declared {
+            diagnostic = diagnostic.note(declared(candidate, declaration));
         }
         // A statement on all smooth ones holds for those affine in x too.
         let smooth = self.bounds().find(|bound| bound.excludes() && bound.class == BoundClass::Smooth);
@@ -236,7 +237,12 @@ impl Search {
             diagnostic = diagnostic.note(bound.sentence(&plant.arena));
         }
         diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
-        diagnostic.help("measure another signal, assume the signs of what is positive, or write a phi of your own")
+        diagnostic.help(match &self.declared {
+            Some((_, declaration)) => declaration.help(&plant.arena),
+            None => {
+                "measure another signal, assume the signs of what is positive, or write a phi of your own".to_owned()
+            }
+        })
     }
 
     /// The refusal of a given transform, with the search's result in its place.
@@ -249,8 +255,8 @@ impl Search {
             let refusal = self.killing_fields(plant).into_iter().fold(refusal, Diagnostic::note);
             return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
         }
-        let refusal = match &self.assumed {
-            Some((candidate, signs)) => refusal.note(assumed(candidate, signs)),
+        let refusal = match &self.declared {
+            Some((candidate, declaration)) => refusal.note(declared(candidate, declaration)),
             None => refusal,
         };
         match self.bounds().find(|bound| bound.excludes()) {
@@ -270,11 +276,10 @@ impl Search {
     }
 }
 
-/// The sentence that a transform is accepted where states have signs.
-pub fn assumed(candidate: &Candidate, signs: &[Symbol]) -> String {
-    let arena = &candidate.plant.arena;
-    let signs: Vec<String> = signs.iter().map(|state| format!("{} > 0", arena.name(*state))).collect();
-    format!("with `assume: [{}]`, phi = [{}] is accepted", signs.join(", "), candidate.formulas().join(", "))
+/// The sentence that a transform is accepted with a declaration.
+pub fn declared(candidate: &Candidate, declaration: &Declaration) -> String {
+    let lines = declaration.lines(&candidate.plant.arena);
+    format!("with {lines}, phi = [{}] is accepted", candidate.formulas().join(", "))
 }
 
 /// Tests whether another transform settles a refusal.

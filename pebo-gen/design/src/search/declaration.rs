@@ -1,0 +1,141 @@
+//! Declarations with which a transform is accepted, found by trying them.
+//!
+//! In: a search without a transform that is accepted. Out: signs of states, angles among them, or any class of cascade,
+//! where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
+
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashMap;
+
+use crate::analysis::{Class, Verdict};
+use crate::plant::Plant;
+use pebo_cas::{Arena, Expr, Function, Node, Relation, Symbol};
+
+use super::accepted;
+use super::candidate::Candidate;
+use super::problem::Problem;
+
+/// The share of the remaining budget for each declaration.
+const SHARE: u64 = 2;
+
+/// A declaration that a model lacks.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Declaration {
+    /// These states are positive.
+    Positive(Vec<Symbol>),
+    /// These states are angles of the period.
+    Angles(Vec<(Symbol, Expr)>),
+    /// No class of cascade is asked for.
+    AnyClass,
+}
+
+impl Declaration {
+    /// The lines of the model file.
+    pub fn lines(&self, arena: &Arena) -> String {
+        let listed = |entries: Vec<String>| entries.join(", ");
+        match self {
+            Self::Positive(states) => format!("`assume: [{}]`", listed(signs(arena, states))),
+            Self::Angles(angles) => {
+                let entry =
+                    |(state, period): &(Symbol, Expr)| format!("{}: {}", arena.name(*state), arena.print(*period));
+                format!("`angles: {{{}}}`", listed(angles.iter().map(entry).collect()))
+            }
+            Self::AnyClass => "no `class`".to_owned(),
+        }
+    }
+
+    /// The advice to write it.
+    pub fn help(&self, arena: &Arena) -> String {
+        match self {
+            Self::Positive(_) | Self::Angles(_) => format!("write {}, if that holds of the plant", self.lines(arena)),
+            Self::AnyClass => "leave out `class`".to_owned(),
+        }
+    }
+
+    /// The inequalities that it assumes.
+    pub fn assumed(&self, arena: &Arena) -> Vec<String> {
+        if let Self::Positive(states) = self { signs(arena, states) } else { Vec::new() }
+    }
+}
+
+fn signs(arena: &Arena, states: &[Symbol]) -> Vec<String> {
+    states.iter().map(|state| format!("{} > 0", arena.name(*state))).collect()
+}
+
+/// The first declaration with which a transform recovers all states.
+pub(super) fn helpful(
+    problem: &Problem<'_>,
+    candidates: &[Candidate],
+    class: Option<Class>,
+) -> Option<(Candidate, Declaration)> {
+    with_signs(problem, candidates).or_else(|| with_angles(problem, class)).or_else(|| with_any_class(problem, class))
+}
+
+/// The first transform that recovers the states if states without a known sign are positive.
+fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candidate, Declaration)> {
+    let arena = problem.arena;
+    let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
+    let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
+    let unknown = |state: &Symbol| {
+        let state = arena.of_symbol(*state);
+        ![state, arena.neg(state)].iter().any(|e| problem.domain.implies(arena, *e, Relation::Positive))
+    };
+    let signs: Vec<Symbol> = problem.x.iter().copied().filter(unknown).collect();
+    if signs.is_empty() || !problem.goes_on() {
+        return None;
+    }
+    let plant = problem.plant.with_positive(&signs);
+    let problem = Problem::of(&plant);
+    let candidate = arena.budget().share(SHARE, || Candidate::of(&problem, &candidate.plant.transform()));
+    candidate.is_full().then_some((candidate, Declaration::Positive(signs)))
+}
+
+/// The transform of the plant in which the states that it holds in sines and cosines alone are angles.
+fn with_angles(problem: &Problem<'_>, class: Option<Class>) -> Option<(Candidate, Declaration)> {
+    let plant = problem.plant;
+    let states = problem.x.iter().filter(|state| plant.period(**state).is_none());
+    let angles: Vec<(Symbol, Expr)> = states.filter_map(|state| Some((*state, period(plant, *state)?))).collect();
+    if angles.is_empty() || !problem.goes_on() {
+        return None;
+    }
+    let plant = plant.with_angles(&angles);
+    let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, class))?;
+    Some((candidate, Declaration::Angles(angles)))
+}
+
+/// The transform of any class, where one is asked for.
+fn with_any_class(problem: &Problem<'_>, class: Option<Class>) -> Option<(Candidate, Declaration)> {
+    class.filter(|_| problem.plant.cascade_class.is_some() && problem.goes_on())?;
+    let plant = Plant { cascade_class: None, ..problem.plant.clone() };
+    let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, None))?;
+    Some((candidate, Declaration::AnyClass))
+}
+
+/// The period of a state that the plant holds in sines and cosines alone, as the same multiple in each.
+fn period(plant: &Plant, state: Symbol) -> Option<Expr> {
+    let arena = &plant.arena;
+    let values = plant.y.iter().filter_map(|output| output.value);
+    let identities = plant.identities.iter().copied();
+    let formulas: Vec<Expr> =
+        plant.rates().into_values().chain(values.chain(identities).map(|formula| formula.expr)).collect();
+    let is_turned = |expr: &Expr| matches!(arena.node(*expr), Node::Call(Function::Sin | Function::Cos, _));
+    let calls: Vec<Expr> = arena.postorder(&formulas).into_iter().filter(is_turned).collect();
+    let mut multiples = BTreeSet::new();
+    for call in &calls {
+        let Node::Call(_, arguments) = arena.node(*call) else { continue };
+        let multiple = arena.derivative(arguments[0], state);
+        if !arena.is_zero(multiple) {
+            let turned = arena.div(arena.turn(), multiple);
+            let negative = arena.as_number(multiple).is_some_and(|number| number.signum() < 0);
+            multiples.insert(if negative { arena.neg(turned) } else { turned });
+        }
+    }
+    let (Some(period), 1) = (multiples.first().copied(), multiples.len()) else { return None };
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    // With a symbol in the place of its sines and cosines nothing else may hold the state.
+    let symbol = arena.of_symbol(arena.generated("turned"));
+    let replaced: FxHashMap<Expr, Expr> = calls.iter().map(|call| (*call, symbol)).collect();
+    let holds_state = |formula: &Expr| arena.depends_on(arena.replace(*formula, &replaced), &BTreeSet::from([state]));
+    let only_turned = !formulas.iter().any(holds_state);
+    (only_turned && arena.symbols_of(&[period]).is_subset(&constants)).then_some(period)
+}
