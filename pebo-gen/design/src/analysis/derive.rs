@@ -239,8 +239,10 @@ fn regressed(
     forms::static_form(plant, domain, claims, given, found, before)
 }
 
-/// The claims with each output by the equation that says most, where the unknowns are identified no later; else the
-/// given. Of the diagnostics, those from `before` on are of these claims.
+/// The claims with each output by the equation that says most, where that takes no excitation that the given ones do
+/// not need; else the given. A rate that identifies at once what its value identifies over time says nothing more: it
+/// counts the value's noise twice, and not what disturbs the value.
+/// Of the diagnostics, those from `before` on are of these claims.
 fn with_all_outputs(
     plant: &Plant,
     domain: &Domain,
@@ -255,7 +257,7 @@ fn with_all_outputs(
     for claim in choice.regressions {
         let mut others = said.clone();
         let both = forms::proved(plant, domain, (class, cascade, inverse), claim, &mut others);
-        let both = both.filter(|both| !forms::at_once(&given.1) || forms::at_once(&both.1));
+        let both = both.filter(|both| !forms::at_once(&given.1) || forms::by_itself(&both.1));
         if let Some((mut claim, identified)) = both {
             if let Some(result) = &mut claim.result {
                 result.unused = choice.unused;

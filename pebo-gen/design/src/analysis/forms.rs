@@ -65,6 +65,14 @@ pub(super) fn at_once(claim: &Claim<Identifiability>) -> bool {
     claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(|result| result.kind == Excitation::Instant)
 }
 
+/// Tests whether all unknowns are identified without a movement of the inputs.
+pub(super) fn by_itself(claim: &Claim<Identifiability>) -> bool {
+    let moves_not = |result: &Identifiability| {
+        result.kind == Excitation::Instant || result.trajectories.as_ref().is_some_and(|t| t.by_itself == Some(true))
+    };
+    claim.verdict == Verdict::Proved && claim.result.as_ref().is_some_and(moves_not)
+}
+
 /// The two claims with a relation as it holds at every instant, where the model chooses that and the given regression
 /// has none. Of the diagnostics, those from `before` on are of these claims.
 pub(super) fn static_form(

@@ -305,7 +305,7 @@ fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &
 
 /// The formulas whose slopes are needed.
 struct Formulas {
-    /// phi, by x and y.
+    /// phi with the values of outputs that are given by them, by x and y.
     phi: Slopes,
     /// The rates of z, by y.
     flow: Slopes,
@@ -335,7 +335,9 @@ impl Formulas {
             let terms = factors.iter().zip(unknowns).map(|(factor, s)| arena.mul(*factor, arena.of_symbol(*s)));
             terms.fold(arena.zero(), |sum, term| arena.add(sum, term))
         };
-        let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
+        // An output that is given by its value moves with the states.
+        let given = plant.y.iter().filter_map(|output| Some((output.symbol, output.value?.expr)));
+        let phi = arena.substitute_all(&plant.transform(), &given.collect());
         let flow: Vec<Expr> = match &cascade.lambda {
             Some(lambda) => {
                 let rates = cascade.h.iter().zip(lambda);

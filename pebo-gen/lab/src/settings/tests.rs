@@ -73,6 +73,19 @@ fn deviations_become_covariances_through_the_slopes_of_phi() {
 }
 
 #[test]
+fn an_output_that_is_given_by_its_value_moves_with_the_states() {
+    // z = x1 - y1 is -x2: it starts as wrong as x2, and drifts as x2 does.
+    let text = "model: m\nx: [x1, x2]\ny: [y1, y2]\nf_x: {x1: x2, x2: 0}\nf_y: {y2: x1}\ng_y: {y1: x1 + x2}\n\
+                phi: [x1 - y1, x1]\nobserver: {sensors: {y1: 1e-4, y2: 0.1}, start: {x1: 0.01, x2: 1}, disturbance: {x2: 3}}\n\
+                simulation: {duration: 1, step: 0.01, initial: {x1: 0, x2: 1, y2: 0}}\n";
+    let (settings, problems) = derived(text);
+    let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+    let [start, noise, _] = numbers(&settings);
+    let first = start.len() - 2;
+    assert!(close(&start[first..], &[1.0, 1e-4]) && (noise[first] - 9.0).abs() < 0.01, "{start:?} {noise:?}");
+}
+
+#[test]
 fn covariances_of_z_may_be_written() {
     let known =
         "observer: {sensors: {v2: 0.1, v4: 0.2}, covariance: [7, 8], process_noise: 0.5, within: {lower: -9}}\n";

@@ -53,9 +53,7 @@ pub(super) fn never(
             return diagnostic.help("drop the redundant components of phi");
         }
         if let Some(sentence) = observable_states(plant, domain, directions, left_inverse) {
-            return diagnostic
-                .note(sentence)
-                .help("measure another output, or make one state of what the outputs show");
+            return diagnostic.note(sentence).help("measure another output");
         }
     }
     let blind = match &plant.class {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{cleared, relations, separation};
+use super::{cleared, combined, relations, separation};
 use crate::analysis::affine;
 use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
 use crate::plant::matrix::dot;
@@ -50,7 +50,7 @@ pub(in crate::analysis) fn from_identities(
     }
     let Some(left_inverse) = left_inverse else { return Claim { verdict: Verdict::Skipped, result: None } };
     let identities = cleared::in_z(plant, domain, left_inverse);
-    constant_relation(plant, domain, left_inverse, (&identities, plant.identities[0].span), found)
+    constant_relation(plant, domain, (cascade, left_inverse), (&identities, plant.identities[0].span), found)
 }
 
 /// A static regression from relations between the components of the transform; none if there are none, or theta cannot
@@ -73,7 +73,7 @@ pub(super) fn from_relations(
         }
         None => {
             let relations: Vec<Equation> = relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect();
-            constant_relation(plant, domain, left_inverse?, (&relations, span), &mut own)
+            constant_relation(plant, domain, (cascade, left_inverse?), (&relations, span), &mut own)
         }
     };
     // An undecided claim is left to the rates, which the author can mend.
@@ -164,11 +164,16 @@ fn under_lambda(
 fn constant_relation(
     plant: &Plant,
     domain: &Domain,
-    left_inverse: &LeftInverse,
+    (cascade, left_inverse): (&Cascade, &LeftInverse),
     (equations, span): (&[Equation], Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
+    if equations.iter().all(|equation| combined::affine(plant, domain, equation.rate).is_some())
+        && let Some(claim) = combined::joined(plant, domain, cascade, Some(left_inverse), equations, found)
+    {
+        return claim;
+    }
     let in_z: &[Expr] = &equations.iter().map(|equation| equation.rate).collect::<Vec<_>>();
     match separation::separate(plant, domain, in_z) {
         Ok(Some(separated)) => {

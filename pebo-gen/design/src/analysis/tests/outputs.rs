@@ -57,3 +57,17 @@ fn a_reciprocal_among_the_components_multiplies_a_rate() {
                  f_y: {q: a*(v - (2 + sat(v))*(3*b + abs(b - p)))}\nphi: [1/a, 3*b + abs(b - p)]";
     assert_eq!(regressed(plant), (RegressionKind::Implicit, vec!["q".into()], Vec::new()));
 }
+
+#[test]
+fn a_value_that_identifies_over_time_needs_no_rate_of_its_own() {
+    // The rate of y1 is x1: it would say nothing of what moves x1, and count the noise of y1 twice.
+    let plant = "x: [x1, x2]\ny: [y1, y2]\nf_x: {x1: 0, x2: x1}\nf_y: {y2: x1 + x2}\ng_y: {y1: x1 + x2}\nphi: [x1, x2]";
+    assert_eq!(regressed(plant).1, ["y2", "y1"]);
+}
+
+#[test]
+fn values_that_are_linear_in_theta_are_so_in_any_order() {
+    let plant = "x: [x1, x2]\ny: [y1, y2]\nf_x: {x1: x2, x2: 0}\ng_y: {y1: x2, y2: x1}\nphi: [x1, x2]";
+    let (plant, derivation) = derive(plant);
+    assert!(derivation.regression.result.expect("proved").is_linear(&plant));
+}
