@@ -1,7 +1,7 @@
 //! Searches without a transform, or without one that is found.
 
 use pebo_gen::analysis::{Class, Outcome};
-use pebo_gen::search::{BoundClass, SearchVerdict};
+use pebo_gen::search::{BoundClass, Declaration, SearchVerdict};
 use pebo_gen::source::{Code, Source};
 use pebo_gen::{Request, Standing, answer, solve};
 
@@ -83,8 +83,9 @@ fn a_sign_that_would_do_is_named() {
     let lines = "parameters: [k]\nx: [v]\ny: [q]\nu: [F]\nf_x: {v: (F - k*q)/v - k*v}\nf_y: {q: v^2}";
     let (_, found) = search(lines, None);
     assert_eq!(found.verdict, SearchVerdict::Undecided);
-    let (candidate, signs) = found.assumed.expect("an assumption");
-    assert_eq!((signs.len(), candidate.plant.phi.len()), (1, 1));
+    let (candidate, declaration) = found.declared.expect("an assumption");
+    assert!(matches!(&declaration, Declaration::Positive(signs) if signs.len() == 1), "{declaration:?}");
+    assert_eq!(candidate.plant.phi.len(), 1);
     let (_, found) = search(&format!("{lines}\nassume: [v > 0]"), None);
     assert_eq!(found.verdict, SearchVerdict::Found);
 }

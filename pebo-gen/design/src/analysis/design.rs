@@ -213,12 +213,11 @@ impl Regression {
         let place =
             |primitive: &Expr| plant.y.iter().position(|output| arena.as_symbol(*primitive) == Some(output.symbol));
         match self.kind {
-            RegressionKind::Static => None,
             RegressionKind::Dynamic => Some(self.rows()),
             RegressionKind::Implicit if self.primitive_1.iter().all(is_known) => {
                 self.primitive_0[..first].iter().map(place).collect()
             }
-            RegressionKind::Implicit => None,
+            RegressionKind::Static | RegressionKind::Implicit => None,
         }
     }
 

@@ -120,13 +120,11 @@ fn in_z(
 /// if these are all.
 fn static_equations(plant: &Plant, domain: &Domain, left_inverse: Option<&LeftInverse>) -> (Vec<Equation>, bool) {
     let arena = &plant.arena;
-    let identities = match left_inverse {
-        Some(left_inverse) => cleared::in_z(plant, domain, left_inverse),
-        None => {
-            let as_written = |identity: &Formula| Equation::instant(arena, identity.expr, outputs_of(plant, identity));
-            plant.identities.iter().map(as_written).collect()
-        }
-    };
+    let as_written = |identity: &Formula| Equation::instant(arena, identity.expr, outputs_of(plant, identity));
+    let identities = left_inverse.map_or_else(
+        || plant.identities.iter().map(as_written).collect(),
+        |left_inverse| cleared::in_z(plant, domain, left_inverse),
+    );
     let unknown: BTreeSet<Symbol> = plant.z.iter().copied().collect();
     let (identities, open): (Vec<Equation>, Vec<Equation>) = identities
         .into_iter()

@@ -16,6 +16,9 @@ use super::equation::{Equation, outputs_in, outputs_of};
 use super::functions::steps;
 use super::refusal::undecided;
 
+/// An affine function of z that vanishes, with the positions of the outputs whose equation it is.
+type OutputRow = (affine::Row, Vec<usize>);
+
 /// A static regression `Phi_0 = Phi_1 eta` from the identities.
 pub(in crate::analysis) fn from_identities(
     plant: &Plant,
@@ -65,16 +68,13 @@ pub(super) fn from_relations(
     let relations = relations::among(plant, domain).ok().filter(|relations| !relations.is_empty())?;
     let mut own = Vec::new();
     let span = plant.phi.first().map_or(Span::point(0), |phi| phi.span);
-    let claim = match cascade.lambda {
-        Some(_) => {
-            let row = |relation: &Expr| Some(Ok((in_z(plant, *relation)?, outputs_in(plant, *relation))));
-            let rows = relations.iter().filter_map(row).collect();
-            under_lambda(plant, domain, (rows, span), &mut own)
-        }
-        None => {
-            let relations: Vec<Equation> = relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect();
-            constant_relation(plant, domain, (cascade, left_inverse?), (&relations, span), &mut own)
-        }
+    let claim = if cascade.lambda.is_some() {
+        let row = |relation: &Expr| Some(Ok((in_z(plant, *relation)?, outputs_in(plant, *relation))));
+        let rows = relations.iter().filter_map(row).collect();
+        under_lambda(plant, domain, (rows, span), &mut own)
+    } else {
+        let relations: Vec<Equation> = relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect();
+        constant_relation(plant, domain, (cascade, left_inverse?), (&relations, span), &mut own)
     };
     // An undecided claim is left to the rates, which the author can mend.
     if claim.verdict == Verdict::Undecided && own.iter().any(|d| d.code == Code::RegressionUndecided) {
@@ -100,7 +100,7 @@ fn in_z(plant: &Plant, relation: Expr) -> Option<affine::Row> {
 fn under_lambda(
     plant: &Plant,
     domain: &Domain,
-    (rows, span): (Vec<Result<(affine::Row, Vec<usize>), Obstacle>>, Span),
+    (rows, span): (Vec<Result<OutputRow, Obstacle>>, Span),
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
     let arena = &plant.arena;
