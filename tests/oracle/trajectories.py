@@ -185,6 +185,9 @@ def complaints(plant, answer, draw):
     names = plant.x + plant.y + plant.u
     for _ in range(6):
         values = {SYMBOLS[name]: ordinary(draw) for name in names}
+        # Equal numbers are special: coefficients hold differences.
+        if len({abs(value) for value in values.values()}) < len(values):
+            continue
         point = values | {SYMBOLS["w"]: plant.value}
         if plant.positive:
             point[SYMBOLS["x1"]] = abs(point[SYMBOLS["x1"]]) + 1
