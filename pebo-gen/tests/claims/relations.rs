@@ -76,7 +76,7 @@ pub(super) const RELATIONS: &[Row] = &[
         "a state that its voltage tells, in a charge that is quadratic in it",
         "parameters: [C, k, R]\nassume: [C > 0, k > 0, v > 0]\nx: [v]\ny: [V]\nu: [I]\nf_x: {v: -I/(C + k*v)}\n\
          g_y: {V: v - R*I}\nphi: [C*v + k*v^2/2]",
-        Accepted("static over-parameterised instant"),
+        Accepted("static linear instant"),
     ),
     // A rate that holds the unknown in a denominator.
     (

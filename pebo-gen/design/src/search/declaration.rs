@@ -11,7 +11,6 @@ use crate::analysis::{Class, Verdict};
 use crate::plant::Plant;
 use pebo_cas::{Arena, Expr, Function, Node, Relation, Symbol};
 
-use super::accepted;
 use super::candidate::Candidate;
 use super::problem::Problem;
 
@@ -62,13 +61,19 @@ fn signs(arena: &Arena, states: &[Symbol]) -> Vec<String> {
     states.iter().map(|state| format!("{} > 0", arena.name(*state))).collect()
 }
 
+/// The search for the best transform of a plant, if one is accepted.
+type Accepted<'a> = &'a dyn Fn(&Plant, Option<Class>) -> Option<Candidate>;
+
 /// The first declaration with which a transform recovers all states.
 pub(super) fn helpful(
     problem: &Problem<'_>,
     candidates: &[Candidate],
     class: Option<Class>,
+    accepted: Accepted<'_>,
 ) -> Option<(Candidate, Declaration)> {
-    with_signs(problem, candidates).or_else(|| with_angles(problem, class)).or_else(|| with_any_class(problem, class))
+    with_signs(problem, candidates)
+        .or_else(|| with_angles(problem, class, accepted))
+        .or_else(|| with_any_class(problem, class, accepted))
 }
 
 /// The first transform that recovers the states if states without a known sign are positive.
@@ -91,7 +96,11 @@ fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candid
 }
 
 /// The transform of the plant in which the states that it holds in sines and cosines alone are angles.
-fn with_angles(problem: &Problem<'_>, class: Option<Class>) -> Option<(Candidate, Declaration)> {
+fn with_angles(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
     let plant = problem.plant;
     let states = problem.x.iter().filter(|state| plant.period(**state).is_none());
     let angles: Vec<(Symbol, Expr)> = states.filter_map(|state| Some((*state, period(plant, *state)?))).collect();
@@ -104,7 +113,11 @@ fn with_angles(problem: &Problem<'_>, class: Option<Class>) -> Option<(Candidate
 }
 
 /// The transform of any class, where one is asked for.
-fn with_any_class(problem: &Problem<'_>, class: Option<Class>) -> Option<(Candidate, Declaration)> {
+fn with_any_class(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
     class.filter(|_| problem.plant.cascade_class.is_some() && problem.goes_on())?;
     let plant = Plant { cascade_class: None, ..problem.plant.clone() };
     let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, None))?;

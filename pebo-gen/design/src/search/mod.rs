@@ -108,7 +108,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         (false, false) => SearchVerdict::Undecided,
     };
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
-    let declared = if is_open { declaration::helpful(&problem, &candidates, class) } else { None };
+    let declared = if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
     Search { verdict, candidates, declared, bound, affine, generalised, tried }
 }
 

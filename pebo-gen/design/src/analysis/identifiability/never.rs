@@ -52,9 +52,8 @@ pub(super) fn never(
         if harmless {
             return diagnostic.help("drop the redundant components of phi");
         }
-        if let Some(sentence) = observable_states(plant, domain, directions, left_inverse) {
-            return diagnostic.note(sentence).help("measure another output");
-        }
+        let shown = observable_states(plant, domain, directions, left_inverse);
+        diagnostic = shown.into_iter().fold(diagnostic, Diagnostic::note);
     }
     let blind = match &plant.class {
         Some(Class::Linear(linear)) => pencil::unobservable_states(plant, domain, linear).ok().flatten(),

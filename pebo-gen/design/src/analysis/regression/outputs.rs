@@ -39,16 +39,7 @@ pub(in crate::analysis) fn with_all_outputs(
     regression: &Regression,
     found: &mut Vec<Diagnostic>,
 ) -> OutputChoice {
-    let Some(given) = of_regression(plant, domain, cascade, regression) else {
-        return OutputChoice { regressions: Vec::new(), unused: Vec::new(), added: Vec::new() };
-    };
-    let used: BTreeSet<usize> = given.iter().flat_map(|equation| equation.outputs.iter().copied()).collect();
-    let by_value = |output: &usize| given.iter().any(|e| plant.arena.is_zero(e.primitive) && e.outputs == [*output]);
-    let mut values = Vec::new();
-    if plant.relation_form.is_none() {
-        let moving = used.iter().filter(|output| plant.y[**output].moves_with_value() && !by_value(output));
-        values.extend(moving.filter_map(|output| Some((*output, value(plant, domain, *output)?))));
-    }
+    let used: BTreeSet<usize> = regression.sources.iter().flatten().copied().collect();
     let (mut added, mut unused) = (Vec::new(), Vec::new());
     for output in (0..plant.y.len()).filter(|output| !used.contains(output)) {
         match equation(plant, domain, left_inverse, output) {
@@ -56,10 +47,19 @@ pub(in crate::analysis) fn with_all_outputs(
             Err(reason) => unused.push(UnusedOutput { output, reason }),
         }
     }
-    if values.is_empty() && added.is_empty() {
-        return OutputChoice { regressions: Vec::new(), unused, added: Vec::new() };
-    }
     let of_added = added.iter().flat_map(|equation| equation.outputs.clone()).collect();
+    let Some(given) = of_regression(plant, domain, cascade, regression) else {
+        return OutputChoice { regressions: Vec::new(), unused, added: of_added };
+    };
+    let by_value = |output: &usize| given.iter().any(|e| plant.arena.is_zero(e.primitive) && e.outputs == [*output]);
+    let mut values = Vec::new();
+    if plant.relation_form.is_none() {
+        let moving = used.iter().filter(|output| plant.y[**output].moves_with_value() && !by_value(output));
+        values.extend(moving.filter_map(|output| Some((*output, value(plant, domain, *output)?))));
+    }
+    if values.is_empty() && added.is_empty() {
+        return OutputChoice { regressions: Vec::new(), unused, added: of_added };
+    }
     let is_replaced = |equation: &Equation| {
         let [output] = equation.outputs.as_slice() else { return false };
         values.iter().any(|(replaced, _)| replaced == output)
