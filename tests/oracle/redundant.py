@@ -36,6 +36,8 @@ from pathlib import Path
 
 import numpy as np
 
+from series import rank
+
 RUNS = 300
 # A standard deviation by the quantile of nine tenths has a relative error of 0.89/sqrt(RUNS); four of these.
 MARGIN = 4 * 0.89 / RUNS**0.5
@@ -163,20 +165,6 @@ class Plant:
     def last(self):
         """The samples of the last tenth."""
         return slice(self.steps - self.steps // 10, self.steps + 1)
-
-
-def rank(rows):
-    rows, found = [list(row) for row in rows], 0
-    for column in range(len(rows[0])):
-        pivot = next((r for r in range(found, len(rows)) if rows[r][column]), None)
-        if pivot is None:
-            continue
-        rows[found], rows[pivot] = rows[pivot], rows[found]
-        for r in range(found + 1, len(rows)):
-            factor = rows[r][column] / rows[found][column]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[found])]
-        found += 1
-    return found
 
 
 def advance(rate, noise, step):
