@@ -295,6 +295,11 @@ fn a_declaration_with_which_a_transform_is_accepted_is_found_by_trying() {
         let source = Source::new("m.yaml", format!("model: m\n{with}\n")).unwrap();
         assert_eq!(pebo_gen::derive(&source).unwrap().derivation.outcome, Outcome::Accepted, "{with}");
     }
+    // A period of unknown sign would be refused.
+    let lines = hall.replace("{A: 1}", "{A: 1, n: null}").replace("(q)", "(n*q)");
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).unwrap();
+    let refusal = &pebo_gen::derive(&source).unwrap().derivation.diagnostics[0];
+    assert!(!refusal.notes.iter().any(|note| note.contains("angles")), "{refusal:?}");
 }
 
 #[test]

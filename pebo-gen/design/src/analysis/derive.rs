@@ -251,7 +251,7 @@ fn with_all_outputs(
     found: &mut Vec<Diagnostic>,
     before: usize,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
-    let Some(regression) = given.0.result.as_mut().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
+    let Some(regression) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
     let mut said = Vec::new();
     let mut choice = regression::with_all_outputs(plant, domain, cascade, inverse, regression, &mut said);
     for claim in choice.regressions {

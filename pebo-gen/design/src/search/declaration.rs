@@ -133,17 +133,19 @@ fn period(plant: &Plant, state: Symbol) -> Option<Expr> {
         plant.rates().into_values().chain(values.chain(identities).map(|formula| formula.expr)).collect();
     let is_turned = |expr: &Expr| matches!(arena.node(*expr), Node::Call(Function::Sin | Function::Cos, _));
     let calls: Vec<Expr> = arena.postorder(&formulas).into_iter().filter(is_turned).collect();
-    let mut multiples = BTreeSet::new();
+    let domain = plant.domain();
+    let mut periods = BTreeSet::new();
     for call in &calls {
         let Node::Call(_, arguments) = arena.node(*call) else { continue };
         let multiple = arena.derivative(arguments[0], state);
         if !arena.is_zero(multiple) {
+            // A model file asks for a period that is known to be positive.
             let turned = arena.div(arena.turn(), multiple);
-            let negative = arena.as_number(multiple).is_some_and(|number| number.signum() < 0);
-            multiples.insert(if negative { arena.neg(turned) } else { turned });
+            let is_positive = |period: &Expr| domain.implies(arena, *period, Relation::Positive);
+            periods.insert([turned, arena.neg(turned)].into_iter().find(is_positive)?);
         }
     }
-    let (Some(period), 1) = (multiples.first().copied(), multiples.len()) else { return None };
+    let (Some(period), 1) = (periods.first().copied(), periods.len()) else { return None };
     let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     // With a symbol in the place of its sines and cosines nothing else may hold the state.
     let symbol = arena.of_symbol(arena.generated("turned"));

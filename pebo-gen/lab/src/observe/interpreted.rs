@@ -262,10 +262,12 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
         let mut held = self.primitive(extension, y);
-        let instant = self.sides(extension, y, u);
-        for row in rows..self.nr {
-            held.known[row] = instant.known[row];
-            held.factor.set_row(row, &instant.factor.row(row));
+        if rows < self.nr {
+            let instant = self.sides(extension, y, u);
+            for row in rows..self.nr {
+                held.known[row] = instant.known[row];
+                held.factor.set_row(row, &instant.factor.row(row));
+            }
         }
         let mut through = SMatrix::<f64, N, N>::zeros();
         for i in 0..self.nr {
