@@ -98,16 +98,19 @@ impl OpenCell {
         }
         let reduced = there.manifold.reduced(arena);
         for (index, equation) in reduced.iter().enumerate() {
-            let replaced = |factor: Expr| {
+            let replaced = |factors: Vec<Expr>| {
                 let mut equations = reduced.clone();
-                equations[index] = factor;
+                equations.splice(index..=index, factors);
                 Self { cell: self.cell.clone(), equations, walls: self.walls.clone() }
             };
             match factors(arena, &self.cell.domain, *equation)? {
                 Factors::One => {}
                 Factors::Several(factors) => return Ok(Finer::Cells(factors.into_iter().map(replaced).collect())),
-                Factors::Roots => return Err(Obstacle::Unsolved(arena.print(*equation))),
+                Factors::Open => return Err(Obstacle::Unsolved(arena.print(*equation))),
             }
+        }
+        if let Some(equation) = there.manifold.coupled(arena) {
+            return Err(Obstacle::Unsolved(arena.print(equation)));
         }
         Ok(Finer::Whole(Cell { domain: there, sides: self.cell.sides }))
     }
@@ -188,6 +191,8 @@ mod tests {
         assert_eq!(components(&[arena.sub(arena.mul(a, c), a), arena.sub(c, b)], &[]).unwrap().len(), 2);
         assert_eq!(components(&[arena.sub(square(a), square(b))], &[]).unwrap().len(), 2);
         assert_eq!(components(&[arena.add(square(a), one)], &[]).unwrap(), [""; 0]);
+        let sum = arena.add(square(a), square(b));
+        assert_eq!(components(&[arena.mul(sum, arena.sub(sum, one))], &[]).unwrap(), ["a^2 + b^2 - 1", "a, b"]);
         // Three values of one symbol are not told apart.
         let cubic = arena.sum([arena.mul(a, square(a)), arena.scale(a, &Rational::from(-3)), one]);
         assert_eq!(components(&[cubic], &[]), None);

@@ -9,11 +9,13 @@
 //! ```
 //!
 //! There are two readers. The normal form takes *exact* steps: their divisors vanish nowhere, so they lose no solution.
-//! Points are completed by any steps: a point at which a divisor vanishes is not taken. An equation that no step solves
-//! is *open*: it holds, but nothing is concluded from it.
+//! An equation that no such step solves is *open*: it holds, but nothing is concluded from it. Points are completed by
+//! any steps: a point at which a divisor vanishes is not taken. Where steps do not suffice, all equations are solved
+//! near the values that are drawn: as written, since eliminating symbols makes degrees grow.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::certified::System;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Symbol};
@@ -42,6 +44,8 @@ pub struct Manifold {
 pub(crate) struct Solution {
     pub steps: Vec<Step>,
     pub open: Vec<Expr>,
+    /// Equations that are solved from a start, in place of steps.
+    system: System,
 }
 
 /// The value of a symbol on the manifold.
@@ -74,8 +78,9 @@ impl Manifold {
     /// The manifold of these equations. The first of the groups must not occur in results, the last are constants.
     pub fn new(arena: &Arena, facts: &Facts, equations: Vec<Expr>, groups: Vec<BTreeSet<Symbol>>) -> Self {
         let solver = Solver { arena, facts, groups: &groups, exact: true };
-        let exact =
-            solver.solve(equations.clone()).unwrap_or_else(|_| Solution { steps: Vec::new(), open: equations.clone() });
+        let exact = solver
+            .solve(equations.clone())
+            .unwrap_or_else(|_| Solution { open: equations.clone(), ..Solution::default() });
         Self { equations, groups, exact }
     }
 
@@ -85,7 +90,7 @@ impl Manifold {
     }
 
     /// The manifold of other equations, solved for the same symbols.
-    pub(crate) fn of(&self, arena: &Arena, facts: &Facts, equations: Vec<Expr>) -> Self {
+    pub fn of(&self, arena: &Arena, facts: &Facts, equations: Vec<Expr>) -> Self {
         Self::new(arena, facts, equations, self.groups.clone())
     }
 
@@ -107,9 +112,15 @@ impl Manifold {
     }
 
     /// The values of those symbols that have a single one.
-    pub(crate) fn determined(&self) -> BTreeMap<Symbol, Expr> {
+    pub fn determined(&self) -> BTreeMap<Symbol, Expr> {
         let single = self.exact.steps.iter().filter(|step| step.root.is_none());
         single.map(|step| (step.symbol, step.middle)).collect()
+    }
+
+    /// The symbols that must not occur in results.
+    pub(super) fn hidden(&self) -> &BTreeSet<Symbol> {
+        static NONE: BTreeSet<Symbol> = BTreeSet::new();
+        self.groups.first().unwrap_or(&NONE)
     }
 
     /// An equation that no exact step solves, so that the normal form does not use it.
@@ -120,6 +131,19 @@ impl Manifold {
     /// All equations that no exact step solves.
     pub(crate) fn open_equations(&self) -> &[Expr] {
         &self.exact.open
+    }
+
+    /// An equation that no exact step solves, if another one that is not solved for a single value shares a symbol with
+    /// it, and no steps at all solve them: together they may hold in several ways though each of them does not.
+    pub(crate) fn coupled(&self, arena: &Arena) -> Option<Expr> {
+        let unsolved = self.unsolved(arena);
+        let shares = |equation: &Expr| {
+            let own = arena.symbols_of(&[*equation]);
+            unsolved.iter().any(|other| other != equation && !arena.symbols_of(&[*other]).is_disjoint(&own))
+        };
+        let equation = self.exact.open.iter().copied().find(shares)?;
+        let plan = self.plan(arena, &unsolved, &Point::new());
+        plan.is_none_or(|plan| plan.is_search()).then_some(equation)
     }
 
     /// Expressions that vanish together where the equations hold: those of the exact steps, and the open equations.
@@ -158,6 +182,7 @@ impl Manifold {
 
 fn vanishes(arena: &Arena, constant: Expr) -> bool {
     arena.is_zero(constant)
+        || arena.is_satisfied(constant)
         || Field::over(arena, &Facts::new(), &[constant])
             .and_then(|field| field.fraction(constant))
             .is_ok_and(|fraction| fraction.is_zero())
@@ -183,7 +208,7 @@ struct Candidate {
 impl Solver<'_> {
     fn solve(&self, equations: Vec<Expr>) -> Result<Solution, Obstacle> {
         let arena = self.arena;
-        let mut open = equations;
+        let mut open = equations.clone();
         let mut steps: Vec<Step> = Vec::new();
         loop {
             let ways = self.candidates(&mut open, &|degree| degree == 1)?;
@@ -205,8 +230,14 @@ impl Solver<'_> {
             held.extend(arena.symbols_of(&[open.remove(way.equation)]));
             steps.push(way.step);
         }
+        if !self.exact
+            && !open.is_empty()
+            && let Some(system) = System::new(arena, equations)
+        {
+            return Ok(Solution { system, ..Solution::default() });
+        }
         self.join_partners(&mut steps)?;
-        Ok(Solution { steps, open })
+        Ok(Solution { steps, open, ..Solution::default() })
     }
 
     /// The ways to solve the equations; those that hold everywhere are dropped.
@@ -216,7 +247,7 @@ impl Solver<'_> {
         let mut left = Vec::new();
         for equation in open.iter() {
             let fraction = field.fraction(*equation)?;
-            if !fraction.is_zero() {
+            if !fraction.is_zero() && !self.arena.is_satisfied(*equation) {
                 numerators.push(fraction.numerator().clone());
                 left.push(*equation);
             }
@@ -424,6 +455,11 @@ impl Partner {
 }
 
 impl Solution {
+    /// True if points are found near drawn ones: a search, which may fail.
+    pub(crate) fn is_search(&self) -> bool {
+        !self.system.is_empty()
+    }
+
     /// The symbols that the steps give.
     pub(crate) fn symbols(&self) -> BTreeSet<Symbol> {
         self.steps.iter().map(|step| step.symbol).collect()
@@ -431,6 +467,9 @@ impl Solution {
 
     /// Completes a point that has the values of all other symbols; none if a step has no value there.
     pub(crate) fn complete(&self, arena: &Arena, point: &mut Point, mut choose: impl FnMut() -> Choice) -> Option<()> {
+        if !self.system.is_empty() {
+            self.system.complete(arena, point)?;
+        }
         let mut waiting: Vec<&Step> = self.steps.iter().collect();
         while !waiting.is_empty() {
             let ready = |step: &&Step| step.needs(arena).iter().all(|symbol| point.contains_key(symbol));

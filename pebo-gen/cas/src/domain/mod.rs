@@ -6,6 +6,7 @@
 mod analytic;
 pub mod bounds;
 pub mod cells;
+mod certified;
 mod components;
 mod extremes;
 mod implied;
@@ -15,6 +16,7 @@ pub mod manifold;
 pub mod reducible;
 pub mod zero;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -30,6 +32,10 @@ const MOST_TRIALS: u64 = 400;
 
 /// The same for a search whose result is optional.
 const FEW_TRIALS: u64 = 4;
+
+/// Starts from which no solution of the equations was found one after the other, after which none is expected: where
+/// solutions are regular, most starts lead to one.
+const MOST_FAILURES: usize = 12;
 
 /// Trials with small integers and random signs.
 const PLAIN_TRIALS: u64 = 8;
@@ -87,7 +93,10 @@ impl Domain {
             .filter(|(_, symbol)| !solved.contains(symbol) && !self.fixed.contains_key(symbol))
             .collect();
         let confined = Confinement::new(arena, &facts, free.iter().map(|(_, symbol)| *symbol));
-        (0..trials).take_while(|_| !arena.budget().is_exhausted()).filter_map(move |trial| {
+        let failures = Rc::new(Cell::new(0));
+        let counted = Rc::clone(&failures);
+        let goes_on = move || !arena.budget().is_exhausted() && counted.get() < MOST_FAILURES;
+        (0..trials).take_while(move |_| goes_on()).filter_map(move |trial| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
             let mut draw = RationalGenerator::new(trial);
             let given = |symbol: &Symbol| Some((*symbol, *self.fixed.get(symbol)?));
@@ -96,7 +105,11 @@ impl Domain {
                 let value = confined.draw(arena, *symbol, &point, |range| draw.value(range, *index));
                 point.insert(*symbol, value);
             }
-            plan.complete(arena, &mut point, || draw.choice())?;
+            let completed = plan.complete(arena, &mut point, || draw.choice());
+            if plan.is_search() {
+                failures.set(if completed.is_none() { failures.get() + 1 } else { 0 });
+            }
+            completed?;
             facts.iter().all(|fact| holds(arena, *fact, &point)).then_some(point)
         })
     }

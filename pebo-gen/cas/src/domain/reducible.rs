@@ -1,14 +1,14 @@
 //! Reducible equations: `a^2 - b^2 = 0` on two lines, on one of which a plant may remain.
 //!
-//! In: a domain with equations. Out: an equation that is a product of factors each of which may be zero, found by
-//! linear factors and squares under roots. Holds after: if there is one, a property proved at a point of the domain
-//! need not hold at almost every other.
+//! In: a domain with equations. Out: an equation that may hold in several ways: a product of factors each of which may
+//! be zero, found by linear factors and squares under roots, or one of several that are solved at once. Holds after: if
+//! there is one, a property proved at a point of the domain need not hold at almost every other.
 
 use crate::graph::arena::Arena;
 use crate::graph::expr::Expr;
-use crate::poly::Poly;
+use crate::poly::{Monomial, Poly};
 use crate::tower::{Field, Obstacle};
-use crate::{Domain, Relation};
+use crate::{Domain, Integer, Relation};
 
 /// An equation of the domain, among those of concern, with several factors that may be zero, as the expression that is
 /// zero.
@@ -17,30 +17,36 @@ pub fn reducible(arena: &Arena, domain: &Domain, concerns: impl Fn(Expr) -> bool
     let assumed = domain.without_equations();
     let roots = domain.manifold.steps().iter().filter(|step| step.root.is_some()).map(|step| step.equation(arena));
     let equations = roots.chain(domain.manifold.open_equations().iter().copied());
-    equations.filter(|equation| concerns(*equation)).find(|equation| {
+    let by_factors = equations.filter(|equation| concerns(*equation)).find(|equation| {
         // A failed computation does not prove irreducibility.
-        factors(arena, &assumed, *equation).map_or(true, |factors| factors.are_several())
-    })
+        holds_in_several_ways(arena, &assumed, *equation).unwrap_or(true)
+    });
+    by_factors.or_else(|| domain.manifold.coupled(arena).filter(|equation| concerns(*equation)))
+}
+
+fn holds_in_several_ways(arena: &Arena, domain: &Domain, equation: Expr) -> Result<bool, Obstacle> {
+    match factors(arena, domain, equation)? {
+        Factors::One => Ok(false),
+        Factors::Open => Ok(true),
+        Factors::Several(ways) => match ways.as_slice() {
+            [] => Ok(false),
+            // Each is shorter than the equation.
+            [parts] => parts
+                .iter()
+                .try_fold(false, |several, part| Ok(several || holds_in_several_ways(arena, domain, *part)?)),
+            _ => Ok(true),
+        },
+    }
 }
 
 /// The ways in which an equation may hold.
 pub(super) enum Factors {
     /// It is no product, as far as rules find.
     One,
-    /// It holds where one of these vanishes; a single one is shorter than the equation.
-    Several(Vec<Expr>),
-    /// It is a polynomial in one symbol, with perhaps several roots.
-    Roots,
-}
-
-impl Factors {
-    fn are_several(&self) -> bool {
-        match self {
-            Self::One => false,
-            Self::Several(factors) => factors.len() > 1,
-            Self::Roots => true,
-        }
-    }
+    /// It holds where all of one of these vanish; a single one is shorter than the equation.
+    Several(Vec<Vec<Expr>>),
+    /// It perhaps has several roots, or factors that no rule finds.
+    Open,
 }
 
 /// The factors of an equation that may vanish by the inequalities of the domain.
@@ -54,39 +60,64 @@ pub(super) fn factors(arena: &Arena, domain: &Domain, equation: Expr) -> Result<
     let parts = fraction.numerator().factored(field.limit())?;
     // A number that is not zero has no factors: the equation holds nowhere.
     let is_product = parts.factors.len() != 1 || parts.factors.iter().any(|(_, exponent)| *exponent > 1);
-    let (mut found, mut is_divided, mut has_roots) = (Vec::new(), is_product, false);
+    let (mut found, mut is_divided, mut is_open) = (Vec::new(), is_product, false);
     for (factor, _) in parts.factors {
         let whole = field.show(&field.of_polynomial(&factor)?);
         if !may_vanish(&whole) {
             is_divided = true;
             continue;
         }
+        if let Some(parts) = squares(&field, &factor) {
+            is_divided = true;
+            found.push(parts);
+            continue;
+        }
         let roots = factor.variables().iter().find_map(|variable| two_roots(&field, &factor, *variable).transpose());
         if let Some(roots) = roots.transpose()? {
             is_divided = true;
-            found.extend(roots.into_iter().filter(may_vanish));
+            found.extend(roots.into_iter().filter(may_vanish).map(|root| vec![root]));
         } else {
-            // It may have as many roots as its degree.
-            has_roots |= matches!(factor.variables(), [variable] if factor.degree(*variable) > 2);
-            found.push(whole);
+            // It may have as many roots as its degree, or factors that no rule finds.
+            is_open |= match factor.variables() {
+                [variable] => factor.degree(*variable) > 2,
+                variables => variables.iter().all(|v| factor.degree(*v) > 2) && !factor.is_proved_irreducible(),
+            };
+            found.push(vec![whole]);
         }
     }
-    Ok(match (has_roots, is_divided) {
-        (true, _) => Factors::Roots,
+    Ok(match (is_open, is_divided) {
+        (true, _) => Factors::Open,
         (false, true) => Factors::Several(found),
         (false, false) => Factors::One,
     })
 }
 
-/// The two linear factors of a polynomial that is quadratic in a variable, as expressions: they exist if the
+/// The expressions that all vanish where a sum of squares does: `a^2 + b^4` where a and b are zero.
+fn squares(field: &Field<'_>, factor: &Poly) -> Option<Vec<Expr>> {
+    let negative = factor.leading_coefficient().is_negative();
+    let is_square = |(monomial, coefficient): &(Monomial, &Integer)| {
+        coefficient.is_negative() == negative && monomial.powers().iter().all(|(_, exponent)| exponent % 2 == 0)
+    };
+    if factor.term_count() < 2 || !factor.terms().all(|term| is_square(&term)) {
+        return None;
+    }
+    let arena = field.arena();
+    let root =
+        |monomial: &Monomial| arena.product(monomial.powers().iter().map(|(variable, _)| field.kernel(*variable)));
+    Some(factor.terms().map(|(monomial, _)| root(&monomial)).collect())
+}
+
+/// The two factors of a polynomial that is quadratic in a power of a variable, as expressions: they exist if the
 /// discriminant is a positive number times a square.
 fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[Expr; 2]>, Obstacle> {
-    if factor.degree(variable) != 2 {
+    let half = factor.degree(variable) / 2;
+    let coefficients = factor.coefficients_in(variable);
+    if half == 0 || coefficients.iter().any(|(power, _)| ![0, half, 2 * half].contains(power)) {
         return Ok(None);
     }
     let mut powers = [Poly::zero(), Poly::zero(), Poly::zero()];
-    for (power, coefficient) in factor.coefficients_in(variable) {
-        powers[power as usize] = coefficient;
+    for (power, coefficient) in coefficients {
+        powers[(power / half) as usize] = coefficient;
     }
     let [constant, linear, leading] = powers.map(|poly| field.of_polynomial(&poly));
     let (constant, linear, leading) = (constant?, linear?, leading?);
@@ -107,9 +138,9 @@ fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[
     let root = arena.product(root.collect::<Result<Vec<Expr>, Obstacle>>()?);
     let scale = arena.sqrt(arena.div(square, arena.mul(root, root)));
     let root = arena.mul(scale, root);
-    // 2 a v + b -+ root
-    let middle =
-        arena.add(arena.mul(arena.scale(field.show(&leading), &2.into()), field.kernel(variable)), field.show(&linear));
+    // 2 a v^half + b -+ root
+    let unknown = arena.power(field.kernel(variable), &i64::from(half).into());
+    let middle = arena.add(arena.mul(arena.scale(field.show(&leading), &2.into()), unknown), field.show(&linear));
     Ok(Some([arena.sub(middle, root), arena.add(middle, root)]))
 }
 
@@ -135,6 +166,7 @@ mod tests {
             reducible(&arena, &domain, |_| true).is_some()
         };
         let one = arena.one();
+        let curve = |a, b| arena.sum([arena.mul(a, square(a)), arena.mul(a, b), arena.mul(b, square(b)), one]);
         let lines = arena.sub(square(a), square(b));
         for (equations, expected) in [
             (vec![lines], true),
@@ -147,6 +179,12 @@ mod tests {
             (vec![arena.sub(square(a), b)], false),
             (vec![arena.mul(a, arena.add(square(b), one))], false),
             (vec![arena.sub(a, b), arena.sub(b, c)], false),
+            // A sum of squares is one place; beside another factor it is a second.
+            (vec![arena.add(square(a), square(b))], false),
+            (vec![arena.mul(arena.add(square(a), square(b)), arena.sub(square(a), b))], true),
+            // Equations that no formula solves one after the other.
+            (vec![curve(a, b), curve(b, c)], true),
+            (vec![curve(a, b)], false),
         ] {
             let text: Vec<String> = equations.iter().map(|e| arena.print(*e)).collect();
             assert_eq!(apart(&equations, &[]), expected, "{text:?}");

@@ -7,8 +7,10 @@
 use crate::Domain;
 use crate::forms::shared_sums::vanishes_over_shared_sums;
 use crate::graph::arena::Arena;
+use crate::graph::conditions::Regularity;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::Expr;
+use crate::linear::combination::combine;
 use crate::number::interval::{Interval, Precision};
 use crate::tower::{Field, Obstacle};
 
@@ -103,13 +105,28 @@ fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     // An expression that vanishes everywhere does so on the manifold; the converse is false.
     if normal.is_err() && !domain.manifold.is_empty() {
         let unsolved = domain.manifold.open().map(|equation| Obstacle::Unsolved(arena.print(equation)));
-        normal = vanishes(Field::on(arena, domain, &[expr])).map_err(|obstacle| unsolved.unwrap_or(obstacle));
+        normal = match (vanishes(Field::on(arena, domain, &[expr])), unsolved) {
+            (Err(_), Some(_)) if exists && is_combination(arena, expr, domain).unwrap_or(false) => Ok(()),
+            (Err(_), Some(unsolved)) => Err(unsolved),
+            (normal, _) => normal,
+        };
     }
     match normal {
         Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,
         Ok(()) => Answer::Open(Obstacle::NoPoint),
         Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
     }
+}
+
+/// True if the expression is a combination of the equations of the domain, with coefficients that are free of what must
+/// not occur in results and have values throughout.
+fn is_combination(arena: &Arena, expr: Expr, domain: &Domain) -> Result<bool, Obstacle> {
+    let equations = domain.manifold.equations();
+    let field = Field::over(arena, &domain.facts, &[equations, &[expr]].concat())?;
+    let Some(coefficients) = combine(&field, expr, equations, domain.manifold.hidden())? else { return Ok(false) };
+    let coefficients: Vec<Expr> = coefficients.iter().map(|coefficient| field.show(coefficient)).collect();
+    let conditions = arena.domain_conditions(&coefficients, Regularity::Defined);
+    Ok(conditions.into_iter().all(|(condition, relation)| domain.implies(arena, condition, relation)))
 }
 
 /// True if all of the expressions are proved to be zero, over the kernels of all at once: shared terms are brought to

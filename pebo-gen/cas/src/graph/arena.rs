@@ -7,9 +7,10 @@ use std::collections::BTreeSet;
 use std::hash::BuildHasher;
 
 use hashbrown::HashTable;
-use rustc_hash::{FxBuildHasher, FxHashMap};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::expr::{Expr, Node, Symbol};
+use crate::number::interval::Interval;
 use crate::number::notation::Notation;
 use crate::{Budget, Rational};
 
@@ -49,6 +50,12 @@ pub struct Arena {
     symbols: RefCell<FxHashMap<String, Symbol>>,
     /// The generator's own by theirs: another space of names.
     generated: RefCell<FxHashMap<String, Symbol>>,
+    /// Constants that are known by an enclosure.
+    located: RefCell<FxHashMap<Symbol, Interval>>,
+    /// Solutions of equations, by the equations and the values that they were searched from.
+    solutions: RefCell<FxHashMap<Vec<Expr>, Option<Vec<Expr>>>>,
+    /// Expressions in them that are zero, as the constants satisfy equations.
+    satisfied: RefCell<FxHashSet<Expr>>,
     notation: Notation,
 }
 
@@ -68,6 +75,9 @@ impl Arena {
             names: RefCell::default(),
             symbols: RefCell::default(),
             generated: RefCell::default(),
+            located: RefCell::default(),
+            solutions: RefCell::default(),
+            satisfied: RefCell::default(),
             notation: Notation::default(),
         }
     }
@@ -138,6 +148,43 @@ impl Arena {
         self.intern(Node::Symbol(symbol))
     }
 
+    /// A new constant within an enclosure, of which nothing else is known: a coordinate of a solution of equations.
+    pub(crate) fn located(&self, value: Interval) -> Expr {
+        let mut names = self.names.borrow_mut();
+        let symbol = Symbol(u32::try_from(names.len()).expect("fewer than 2^32 symbols"));
+        names.push(format!("{}", f64::midpoint(value.lo(), value.hi())));
+        self.located.borrow_mut().insert(symbol, value);
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// The solution of a problem, found once: the same is asked for with each set of points.
+    pub(crate) fn solution(&self, problem: Vec<Expr>, solve: impl FnOnce() -> Option<Vec<Expr>>) -> Option<Vec<Expr>> {
+        if let Some(known) = self.solutions.borrow().get(&problem) {
+            return known.clone();
+        }
+        let found = solve();
+        // Work that the budget ended is no answer.
+        if found.is_some() || !self.budget.is_exhausted() {
+            self.solutions.borrow_mut().insert(problem, found.clone());
+        }
+        found
+    }
+
+    /// Notes that an expression in located constants is zero.
+    pub(crate) fn satisfies(&self, expr: Expr) {
+        self.satisfied.borrow_mut().insert(expr);
+    }
+
+    /// True if an expression in located constants was noted to be zero.
+    pub(crate) fn is_satisfied(&self, expr: Expr) -> bool {
+        self.satisfied.borrow().contains(&expr)
+    }
+
+    /// The enclosure of a located constant.
+    pub(super) fn location(&self, symbol: Symbol) -> Option<Interval> {
+        self.located.borrow().get(&symbol).cloned()
+    }
+
     /// The number as an expression.
     pub fn number(&self, value: impl Into<Rational>) -> Expr {
         self.intern(Node::Number(value.into()))
@@ -171,10 +218,10 @@ impl Arena {
         }
     }
 
-    /// The symbol, if the expression is one.
+    /// The symbol, if the expression is one that has no value.
     pub fn as_symbol(&self, expr: Expr) -> Option<Symbol> {
         match self.nodes.borrow()[expr.0 as usize] {
-            Node::Symbol(symbol) => Some(symbol),
+            Node::Symbol(symbol) if !self.located.borrow().contains_key(&symbol) => Some(symbol),
             _ => None,
         }
     }

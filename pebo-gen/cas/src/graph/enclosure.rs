@@ -142,7 +142,7 @@ impl Arena {
         match self.node(e) {
             Node::Number(value) => Interval::from_rational(&value, p),
             Node::Pi => Interval::pi(p),
-            Node::Symbol(symbol) => values.get(&symbol).cloned(),
+            Node::Symbol(symbol) => values.get(&symbol).cloned().or_else(|| self.location(symbol)),
             Node::Sum(sum) => {
                 let mut total = Interval::from_rational(&sum.constant, p)?;
                 for (term, coefficient) in &sum.terms {

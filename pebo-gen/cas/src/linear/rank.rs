@@ -10,7 +10,7 @@ use crate::domain::zero::decide;
 use crate::graph::enclosure::Point;
 use crate::number::interval::{Interval, Precision};
 use crate::tower::{Field, Fraction, Obstacle};
-use crate::{Arena, Domain, Expr};
+use crate::{Arena, Domain, Expr, Relation};
 
 /// Points that are tried before a rank counts as deficient.
 const MOST_POINTS: usize = 6;
@@ -32,6 +32,38 @@ pub fn proved_rank(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: 
         }
     }
     most
+}
+
+/// True if the matrix provably has full column rank at every point of the domain: an elimination finds pivots that
+/// vanish nowhere.
+pub fn full_rank_throughout(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+) -> Result<bool, Obstacle> {
+    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
+    let field = Field::over(arena, &domain.facts, &entries)?;
+    let fractions = |row: &Vec<Expr>| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>();
+    let mut rest: Vec<Vec<Fraction>> = rows.iter().map(fractions).collect::<Result<_, _>>()?;
+    let vanishes_nowhere =
+        |entry: &Fraction| entry.to_constant().is_some() || domain.implies(arena, field.show(entry), Relation::NonZero);
+    for _ in 0..columns {
+        let mut entries: Vec<(usize, usize)> =
+            (0..rest.len()).flat_map(|row| (0..columns).map(move |column| (row, column))).collect();
+        entries.retain(|(row, column)| !rest[*row][*column].is_zero());
+        entries.sort_by_key(|(row, column)| rest[*row][*column].weight());
+        let pivot = entries.into_iter().find(|(row, column)| vanishes_nowhere(&rest[*row][*column]));
+        let Some((row, column)) = pivot else { return Ok(false) };
+        let row = rest.swap_remove(row);
+        for other in rest.iter_mut().filter(|other| !other[column].is_zero()) {
+            let factor = field.div(&other[column], &row[column])?;
+            for (entry, above) in other.iter_mut().zip(&row) {
+                *entry = field.sub(entry, &field.mul(&factor, above)?)?;
+            }
+        }
+    }
+    Ok(true)
 }
 
 /// True if a matrix, whose entries are given row by row, provably has full column rank at a point.
@@ -79,4 +111,24 @@ pub fn null_vectors(
         }
     }
     Ok(vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranks_that_are_full_throughout_have_pivots_without_zeros() {
+        let arena = Arena::new();
+        let [p, q] = ["p", "q"].map(|name| arena.variable(name));
+        let (zero, one) = (arena.zero(), arena.one());
+        let above = arena.add(arena.mul(q, q), one);
+        let full = |rows: &[Vec<Expr>]| full_rank_throughout(&arena, &Domain::default(), rows, 2).unwrap();
+        assert!(full(&[vec![p, one], vec![above, zero]]));
+        assert!(full(&[vec![zero, one], vec![q, p], vec![one, p]]));
+        assert!(!full(&[vec![p, one], vec![q, zero]]));
+        // The zeros of p and q are not the same, but neither pivot excludes them.
+        assert!(!full(&[vec![p, zero], vec![zero, one], vec![q, zero]]));
+        assert!(!full(&[vec![one, p], vec![one, p]]));
+    }
 }

@@ -27,6 +27,7 @@ mod factors;
 mod field;
 mod gcd;
 mod hashed;
+mod irreducible;
 mod layout;
 mod linear_combination;
 mod monomial;

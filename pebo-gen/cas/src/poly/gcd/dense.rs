@@ -4,7 +4,7 @@
 use super::super::field::{PrimeField, Residue};
 
 /// Drops leading zeros.
-pub(super) fn trim(poly: &mut Vec<Residue>) {
+pub(in crate::poly) fn trim(poly: &mut Vec<Residue>) {
     while poly.last().is_some_and(|coefficient| coefficient.is_zero()) {
         poly.pop();
     }
@@ -41,7 +41,7 @@ fn reduce(field: &PrimeField, a: &mut Vec<Residue>, b: &[Residue]) {
 
 /// The greatest common divisor with leading coefficient 1, by Euclid's algorithm; of two zeros it
 /// is zero, the empty list.
-pub(super) fn gcd(field: &PrimeField, mut a: Vec<Residue>, mut b: Vec<Residue>) -> Vec<Residue> {
+pub(in crate::poly) fn gcd(field: &PrimeField, mut a: Vec<Residue>, mut b: Vec<Residue>) -> Vec<Residue> {
     while !b.is_empty() {
         reduce(field, &mut a, &b);
         std::mem::swap(&mut a, &mut b);

@@ -10,7 +10,7 @@
 //! that no wrong divisor leaves this module.
 
 mod degrees;
-mod dense;
+pub(super) mod dense;
 mod heuristic;
 mod image;
 mod modular;

@@ -8,6 +8,7 @@
 
 pub(in crate::analysis) mod trajectory;
 
+mod components;
 mod crossing;
 mod divided;
 mod excitation;
@@ -15,14 +16,17 @@ mod flow;
 mod never;
 mod singular;
 
+use std::collections::BTreeSet;
+
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
 use pebo_cas::domain::reducible::reducible;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
+use pebo_cas::linear::rank::{full_rank, full_rank_throughout, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
+use self::components::on_components;
 use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
 use self::never::never;
@@ -49,20 +53,39 @@ pub(super) fn prove(
     let formulas = Formulas { rates: moving(plant, cascade, &regressor, &identities), regressor, identities };
     let hidden = plant.hidden();
     let holds_states = depends_on_states(plant, &formulas, cascade);
-    let concerns = |equation| holds_states || !plant.arena.depends_on(equation, &hidden);
-    if let Some(equation) = reducible(&plant.arena, domain, concerns) {
-        found.push(falls_apart(plant, equation));
-        return Claim { verdict: Verdict::Undecided, result: None };
-    }
-    let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
-        where_analytic(plant, domain, cascade, regression, left_inverse, found)
+    let held = held_by(plant, domain, cascade, &formulas.regressor);
+    let concerns =
+        |equation| (holds_states || !plant.arena.depends_on(equation, &hidden)) && binds(plant, equation, &held);
+    let decide = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+        let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+            where_analytic(plant, domain, cascade, regression, left_inverse, found)
+        };
+        divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
     };
-    let mut claim = divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
-        .unwrap_or_else(|obstacle| open(plant, &obstacle, found));
+    let mut claim = match reducible(&plant.arena, domain, concerns) {
+        // A rank that nothing lowers needs no point.
+        Some(_) if is_instant_throughout(plant, domain, &effective, regression) => {
+            let result = Identifiability { everywhere_else: true, ..Identifiability::new(Excitation::Instant) };
+            Claim { verdict: Verdict::Proved, result: Some(result) }
+        }
+        Some(equation) => on_components(plant, domain, &formulas, decide).unwrap_or_else(|| {
+            found.push(falls_apart(plant, equation));
+            Claim { verdict: Verdict::Undecided, result: None }
+        }),
+        None => decide(domain, found).unwrap_or_else(|obstacle| open(plant, &obstacle, found)),
+    };
     if let Some(trajectories) = claim.result.as_mut().and_then(|result| result.trajectories.as_mut()) {
         trajectory::rest::add(trajectories, plant, domain, cascade, regression);
     }
     claim
+}
+
+/// Tests whether the regressor provably has full column rank at every point.
+fn is_instant_throughout(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>], regression: &Regression) -> bool {
+    let rows = without_psi(plant, rows);
+    // A share: the components are examined otherwise.
+    let decide = || full_rank_throughout(&plant.arena, domain, &rows, regression.eta.len());
+    plant.arena.budget().share(4, decide).unwrap_or(false)
 }
 
 /// The rates in the regressor's derivatives; all of them if these hold inputs, which the rates may restrict.
@@ -82,6 +105,35 @@ fn moving(plant: &Plant, cascade: &Cascade, regressor: &[Expr], identities: &[Ex
     let needs_all = plant.commanded().any(|input| reached.contains(&input));
     let own = rates.into_iter().filter(|(symbol, _)| needs_all || reached.contains(symbol)).map(|(_, rate)| rate);
     own.chain(lambda).collect()
+}
+
+/// The symbols of the regressor and its derivatives, and those that equations bind to them: equations in others do not
+/// restrict its arguments.
+fn held_by(plant: &Plant, domain: &Domain, cascade: &Cascade, regressor: &[Expr]) -> BTreeSet<Symbol> {
+    let arena = &plant.arena;
+    let mut rates = plant.rates();
+    let extension = if cascade.lambda.is_some() { &plant.xi } else { &plant.chi };
+    rates.extend(extension.iter().copied().zip(cascade.h.iter().copied()));
+    let lambda = cascade.lambda.iter().flatten().flatten().copied();
+    let mut held = arena.symbols_of(&lambda.chain(regressor.iter().copied()).collect::<Vec<_>>());
+    loop {
+        let moving = held.iter().filter_map(|symbol| rates.get(symbol).copied());
+        let bound = domain.manifold.equations().iter().copied().filter(|equation| binds(plant, *equation, &held));
+        let more = arena.symbols_of(&moving.chain(bound).collect::<Vec<_>>());
+        if more.is_subset(&held) {
+            return held;
+        }
+        held.extend(more);
+    }
+}
+
+/// Tests whether an equation binds one of the symbols: a constant that it shares binds nothing, unless it holds no other
+/// symbols.
+fn binds(plant: &Plant, equation: Expr, symbols: &BTreeSet<Symbol>) -> bool {
+    let arena = &plant.arena;
+    let mut varying = arena.symbols_of(&[equation]);
+    varying.retain(|symbol| plant.parameters.iter().all(|parameter| parameter.symbol != *symbol));
+    if varying.is_empty() { arena.depends_on(equation, symbols) } else { !varying.is_disjoint(symbols) }
 }
 
 /// Tests whether the regressor or a derivative of it along the plant depends on the unmeasured states, through the

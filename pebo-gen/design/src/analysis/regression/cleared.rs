@@ -27,7 +27,8 @@ pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec
         return Ok(vec![row]);
     }
     let affine = |form| as_written(plant, &everywhere, form).or_else(|| affine::of(plant, &everywhere, form).ok()?);
-    if let Some(row) = forms(plant, domain, identity).into_iter().find_map(affine) {
+    let by_others = with_other_values(plant, domain, identity);
+    if let Some(row) = forms(plant, domain, identity).into_iter().chain(by_others).find_map(affine) {
         return Ok(vec![row]);
     }
     let components: Vec<affine::Row> = components(plant, domain, identity).into_iter().filter_map(affine).collect();
@@ -51,6 +52,13 @@ pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -
     let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
     let of = |identity: Expr| {
         let written = arena.substitute(identity, &inverse);
+        let everywhere = domain.without_equations();
+        let is_affine = |form: Expr| matches!(affine::of(plant, &everywhere, form), Ok(Some(_)));
+        if let Some(linear) = with_other_values(plant, domain, identity).filter(|form| is_affine(*form))
+            && !is_affine(identity)
+        {
+            return vec![arena.substitute(linear, &inverse)];
+        }
         let separable = |form: &Expr| matches!(separation::separate(plant, domain, &[*form]), Ok(Some(_)));
         if separable(&written) {
             return vec![written];
@@ -76,6 +84,17 @@ pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -
         }
     }
     found
+}
+
+/// An identity with the states that the other equations give: `c = a*b` is linear where an output is b.
+fn with_other_values(plant: &Plant, domain: &Domain, identity: Expr) -> Option<Expr> {
+    let arena = &plant.arena;
+    let hidden = plant.hidden();
+    let others = domain.manifold.equations().iter().copied().filter(|other| *other != identity).collect();
+    let mut values = domain.manifold.of(arena, &domain.facts, others).determined();
+    values.retain(|symbol, value| hidden.contains(symbol) && !arena.depends_on(*value, &hidden));
+    let form = arena.substitute(identity, &values);
+    (form != identity && arena.depends_on(form, &hidden)).then_some(form)
 }
 
 /// The components of the transform that are functions of a state given by an identity, each less its value.

@@ -21,17 +21,7 @@ pub(super) fn over_parameterised(
     separated: Separation,
     found: &mut Vec<Diagnostic>,
 ) -> Option<Claim<Regression>> {
-    // The fewer functions, if they are enough.
-    let joined = separation::join_dependent(plant, domain, &separated).ok().and_then(|joined| {
-        let recovered = separation::recover(plant, domain, &joined.eta)?;
-        Some((joined, recovered))
-    });
-    let (separated, recovered) = if let Some(both) = joined {
-        both
-    } else {
-        let recovered = separation::recover(plant, domain, &separated.eta)?;
-        (separated, recovered)
-    };
+    let (separated, recovered) = separation::recoverable(plant, domain, separated)?;
     let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
         Ok(steps) => steps,
         Err(verdict) => return Some(Claim { verdict, result: None }),

@@ -180,13 +180,26 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     Separation { known: vec![known], factors: vec![row], eta }
 }
 
-/// Joins functions of theta whose factors are constant combinations of other factors: only their sums are identifiable,
-/// as `theta1 + theta2^2` in a rate `a + b^2`.
-pub(in crate::analysis) fn join_dependent(
+/// The separation with theta recovered from its functions: the fewer of them, if they are enough. None if theta is not
+/// recovered.
+pub(in crate::analysis) fn recoverable(
     plant: &Plant,
     domain: &Domain,
-    separated: &Separation,
-) -> Result<Separation, Obstacle> {
+    separated: Separation,
+) -> Option<(Separation, ThetaRecovery)> {
+    let joined = join_dependent(plant, domain, &separated).ok().and_then(|joined| {
+        let recovered = recover(plant, domain, &joined.eta)?;
+        Some((joined, recovered))
+    });
+    joined.or_else(|| {
+        let recovered = recover(plant, domain, &separated.eta)?;
+        Some((separated, recovered))
+    })
+}
+
+/// Joins functions of theta whose factors are constant combinations of other factors: only their sums are identifiable,
+/// as `theta1 + theta2^2` in a rate `a + b^2`.
+fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separation) -> Result<Separation, Obstacle> {
     let arena = &plant.arena;
     // A symbol for each row, so that one expression holds a column.
     let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();

@@ -178,7 +178,7 @@ fn constant_relation(
     match separation::separate(plant, domain, in_z) {
         Ok(Some(separated)) => {
             let separated = separation::absorb_constants(plant, domain, separated);
-            if let Some(recovered) = separation::recover(plant, domain, &separated.eta) {
+            if let Some((separated, recovered)) = separation::recoverable(plant, domain, separated) {
                 let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
                     Ok(steps) => steps,
                     Err(verdict) => return Claim { verdict, result: None },

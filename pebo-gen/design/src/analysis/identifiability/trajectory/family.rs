@@ -137,11 +137,16 @@ impl TrajectoryProblem<'_> {
         let named = |own: &[Expr], _| {
             TrajectoryCondition::Zero(own.iter().copied().filter(|equation| !known.contains(equation)).collect())
         };
-        let mut open = vec![(domain.clone(), vec![zero])];
+        let mut open = vec![(domain.clone(), vec![zero], None)];
         let mut found = Vec::new();
         for _ in 0..=plant.x.len() + plant.y.len() {
-            for (domain, equations) in std::mem::take(&mut open) {
-                for family in self.families_of(&domain, &equations, held, named)? {
+            for (domain, equations, condition) in std::mem::take(&mut open) {
+                let mut families = self.families_of(&domain, &equations, held, named)?;
+                // What vanishes at all times vanishes with its rates: they add nothing to its condition.
+                if let ([family], Some(condition)) = (families.as_mut_slice(), condition) {
+                    family.condition = condition;
+                }
+                for family in families {
                     let there = &family.domain;
                     let flow = Flow::along(plant, there, cascade, held, &BTreeMap::new())?;
                     let moves = |expr: Expr| {
@@ -150,7 +155,7 @@ impl TrajectoryProblem<'_> {
                     };
                     let rates: Vec<Expr> = there.manifold.reduced(arena).into_iter().filter_map(moves).collect();
                     if !rates.is_empty() {
-                        open.push((family.domain, rates));
+                        open.push((family.domain, rates, Some(family.condition)));
                     } else if plant.rates().into_keys().any(|signal| moves(arena.of_symbol(signal)).is_some()) {
                         found.push(family);
                     }
