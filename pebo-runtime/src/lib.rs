@@ -126,7 +126,7 @@ pub use regression::{
     Filter, Filtered, FilteredRegression, Hold, Moved, Outcome, RegressionOperator, Rows, SampledRegression, Sides,
     Weights, WindowedRegression,
 };
-pub use samples::{Gap, Gate, Limits};
+pub use samples::{Gap, Gate, Limits, unwrapped};
 pub use within::Within;
 
 /// The package's front page, whose example is a test.

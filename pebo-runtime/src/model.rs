@@ -59,6 +59,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// whose primitives are zero. An output that is given by its value has such a row beside the rates of others.
     const INSTANTS: usize = 0;
 
+    /// The periods of the outputs that are angles, 0 for the others: the observer counts the turns of their sensors,
+    /// see [`unwrapped`](crate::unwrapped). By default none is an angle.
+    fn periods(&self) -> SVector<Self::Scalar, NY> {
+        SVector::zeros()
+    }
+
     /// The terms of the output `y` that the functions share.
     fn terms(&self, y: &SVector<Self::Scalar, NY>) -> Self::Terms;
 

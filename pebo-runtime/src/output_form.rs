@@ -109,6 +109,10 @@ where
     type Terms = Measured<M::Terms, M::Scalar, NY>;
     const REGRESSION: Regression = Regression::Static;
 
+    fn periods(&self) -> SVector<M::Scalar, NY> {
+        self.model.periods()
+    }
+
     fn terms(&self, y: &SVector<M::Scalar, NY>) -> Self::Terms {
         Measured { terms: self.model.terms(y), y: *y }
     }

@@ -49,6 +49,10 @@ where
     const REGRESSION: Regression = M::REGRESSION;
     const INSTANTS: usize = M::INSTANTS;
 
+    fn periods(&self) -> SVector<S, NY> {
+        self.model.periods()
+    }
+
     fn terms(&self, y: &SVector<S, NY>) -> M::Terms {
         self.model.terms(y)
     }

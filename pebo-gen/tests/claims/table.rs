@@ -372,7 +372,24 @@ const TABLE: &[Row] = &[
     (
         "an identity that could not be solved",
         "x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: p}\nphi: [p]\nidentities: [b + exp(b) - 3]",
+        Accepted("dynamic linear instant"),
+    ),
+    (
+        "an identity without a change of sign",
+        "x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: p}\nphi: [p]\nidentities: [(b + exp(b) - 3)^2]",
         Undecided(Code::IdentityUndecided),
+    ),
+    (
+        "a circle and its centre",
+        "x: [a, b]\ny: [s]\nu: [w]\nf_x: {a: w*b, b: -w*a}\ng_y: {s: a}\nphi: [a, b]\n\
+         identities: [(a^2 + b^2)^2 - 4*(a^2 + b^2)]",
+        Accepted("implicit linear instant"),
+    ),
+    (
+        "an irreducible quartic, the flux of a salient motor",
+        "parameters: {L: 1, D: 1/2}\nx: [l, m]\ny: [i, j]\nu: [v, w]\nf_x: {l: v - i, m: w - j}\nphi: [l, m]\n\
+         define: {a: l - L*i, b: m - L*j}\nidentities: [(a^2 + b^2 - D*(i*a + j*b))^2 - a^2 - b^2]",
+        Accepted("static over-parameterised excitation"),
     ),
     (
         "identity of ninth degree",

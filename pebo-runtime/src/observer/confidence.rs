@@ -85,7 +85,8 @@ where
         let Some(before) = &self.terms else {
             return Ok(Innovation { value: SVector::zeros(), normalised_square: nalgebra::zero() });
         };
-        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        let terms = self.model.terms(&self.unwrapped(&y));
+        let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
         let regressor = outcome.regressor();
         let error = outcome.regressand() - regressor * self.state.estimator.estimate();
         let root = regressor * self.state.estimator.covariance_root(dt).ok_or(Fault::State)?;
@@ -136,6 +137,7 @@ where
         }
         // The last sample's, then the model's prediction from it.
         (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
+        y = self.unwrapped(&y);
         check(&y, &u, dt)?;
         let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
         let (regressand, regressor) = (Outcome::regressand(&outcome), Outcome::regressor(&outcome));

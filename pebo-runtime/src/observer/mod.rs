@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 use crate::extension::Extension;
 use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
-use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator};
+use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator, unwrapped};
 pub use confidence::Innovation;
 use rebasing::Rebasing;
 
@@ -132,7 +132,7 @@ where
     pub fn step(&mut self, y: impl Into<M::Y>, u: impl Into<M::U>, dt: M::Scalar) -> Result<M::X, Fault> {
         let (y, u) = (y.into().into(), u.into().into());
         check(&y, &u, dt)?;
-        self.advance(&y, [&u, &u], dt).map(M::X::from)
+        self.advance(&self.unwrapped(&y), [&u, &u], dt).map(M::X::from)
     }
 
     /// [`step`](Self::step) for an input that runs straight from the first to the second over the interval.
@@ -143,7 +143,7 @@ where
         let (y, u) = (y.into().into(), u.map(|u| u.into().into()));
         check(&y, &u[0], dt)?;
         check(&y, &u[1], dt)?;
-        self.advance(&y, u.each_ref(), dt).map(M::X::from)
+        self.advance(&self.unwrapped(&y), u.each_ref(), dt).map(M::X::from)
     }
 
     /// Starts again before the first sample, as after an outage that no `dt` can bridge: extension at `chi_0`, filters
@@ -227,6 +227,14 @@ where
     /// The model.
     pub fn model(&self) -> &M {
         &self.model
+    }
+
+    /// The sample as it goes on from the last one.
+    #[inline]
+    fn unwrapped(&self, y: &SVector<M::Scalar, NY>) -> SVector<M::Scalar, NY> {
+        let Some(last) = &self.state.y else { return *y };
+        let periods = self.model.periods();
+        SVector::from_fn(|i, _| unwrapped(y[i], last[i], periods[i]))
     }
 
     /// Takes a good sample, for an input that runs straight from the first to the second.

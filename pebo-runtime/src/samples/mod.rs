@@ -3,7 +3,9 @@
 mod gap;
 mod gate;
 mod limits;
+mod unwrap;
 
 pub use gap::Gap;
 pub use gate::Gate;
 pub use limits::Limits;
+pub use unwrap::unwrapped;

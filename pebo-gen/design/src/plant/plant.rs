@@ -224,6 +224,13 @@ impl Plant {
         self.x.iter().map(|s| s.symbol).chain(self.w.iter().copied()).collect()
     }
 
+    /// Tests whether the author declares the symbol.
+    pub fn declares(&self, symbol: Symbol) -> bool {
+        let outputs = self.y.iter().map(|output| output.symbol);
+        let signals = self.u.iter().copied().chain(self.time).chain(self.hidden()).chain(outputs);
+        signals.chain(self.parameters.iter().map(|parameter| parameter.symbol)).any(|own| own == symbol)
+    }
+
     /// Tests whether the symbol may have any value: of the dynamic extension, or an unknown constant.
     pub fn is_of_extension(&self, symbol: Symbol) -> bool {
         let extension = self.chi.iter().chain(&self.xi).chain(&self.theta).chain(self.psi.iter().flatten());
@@ -243,9 +250,16 @@ impl Plant {
         self.phi.iter().map(|phi| self.arena.directional(phi.expr, &rates)).collect()
     }
 
-    /// The period of a state, if it is an angle.
-    pub fn period(&self, state: Symbol) -> Option<Expr> {
-        self.angles.iter().find(|(s, _)| *s == state).map(|(_, period)| period.expr)
+    /// The period of a state or an output, if it is an angle.
+    pub fn period(&self, signal: Symbol) -> Option<Expr> {
+        self.angles.iter().find(|(s, _)| *s == signal).map(|(_, period)| period.expr)
+    }
+
+    /// The period of each output, zero if it is no angle; none if no output is one.
+    pub fn periods_of_outputs(&self) -> Option<Vec<Expr>> {
+        let periods: Vec<Option<Expr>> = self.y.iter().map(|output| self.period(output.symbol)).collect();
+        let is_angle = periods.iter().any(Option::is_some);
+        is_angle.then(|| periods.into_iter().map(|period| period.unwrap_or_else(|| self.arena.zero())).collect())
     }
 
     /// The symbols eta1.. of so many unknowns.

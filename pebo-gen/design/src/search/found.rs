@@ -87,6 +87,8 @@ pub enum Start {
     States,
     /// The identities and the states; the value of an output is an identity.
     Identities,
+    /// The identities.
+    IdentitiesAlone,
     /// The states divided by a polynomial that divides its own rate.
     Quotients,
     /// The outputs' rates, where unknown constants are taken for known.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::number::rational::half;
+use pebo_cas::solve::cleared;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Function, Node, Rational, Relation, Symbol};
 
@@ -203,4 +204,10 @@ pub(super) fn products(
         independent(problem, &found.iter().map(|(e, _)| *e).collect::<Vec<_>>())?.into_iter().collect();
     found.retain(|(e, _)| kept.contains(e));
     Ok(found)
+}
+
+/// An identity cleared of the roots and angles around states: of `r - sqrt(p^2 + s^2)` the functions are not separable,
+/// of its square they are.
+pub(super) fn without_roots(problem: &Problem<'_>, identity: Expr) -> Expr {
+    cleared(problem.arena, &problem.domain, identity, &problem.hidden).pop().unwrap_or(identity)
 }

@@ -342,10 +342,16 @@ impl Attempts<'_> {
         }
         let rates = problem.output_rates();
         let both = [rates.as_slice(), &states].concat();
-        let identities: Vec<Expr> = problem.plant.identities.iter().map(|identity| identity.expr).collect();
+        let identities: Vec<Expr> =
+            problem.plant.identities.iter().map(|identity| functions::without_roots(problem, identity.expr)).collect();
         let bound = if identities.is_empty() { Vec::new() } else { [identities.as_slice(), &states].concat() };
-        let starts =
-            [(Start::Outputs, &rates), (Start::Both, &both), (Start::States, &states), (Start::Identities, &bound)];
+        let starts = [
+            (Start::Outputs, &rates),
+            (Start::Both, &both),
+            (Start::States, &states),
+            (Start::Identities, &bound),
+            (Start::IdentitiesAlone, &identities),
+        ];
         for (start, formulas) in starts.into_iter().filter(|(_, formulas)| !formulas.is_empty()) {
             if self.is_over() {
                 return;

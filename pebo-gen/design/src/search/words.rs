@@ -53,6 +53,7 @@ impl Start {
             Self::Rows => "the outputs' rates",
             Self::Both => "the functions in the outputs' rates and the states",
             Self::Identities => "the functions in the identities and the states",
+            Self::IdentitiesAlone => "the functions in the identities",
             Self::States => "the states",
             Self::Quotients => "the states divided by a polynomial that divides its own rate",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",

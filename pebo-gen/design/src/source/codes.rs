@@ -260,9 +260,10 @@ codes! {
          Either the identity or a rate is wrong."
     IdentityUndecided "identity-undecided" "the invariance of an identity is neither proved nor refuted"
         "The claims are about trajectories on which the identities hold. No values were found at which they hold, \
-         or it could not be decided whether this identity is invariant along the plant. An identity can be used if \
-         it can be solved for one of its names: the name occurs to the first or second power, or in one power \
-         alone, with a factor that is never zero."
+         or it could not be decided whether this identity is invariant along the plant. Values are found where \
+         an identity changes its sign: write `a - b` rather than its square. Formulas are reduced by it if it can \
+         be solved for one of its names: the name occurs to the first or second power, or in one power alone, with \
+         a factor that is never zero."
     TransformNotFound "transform-not-found" "no transform was found"
         "The model has no phi, and the search found none whose claims are all proved. The notes say what came nearest and \
          why it was refused: a transform of some states, or one that would be accepted with the signs of states assumed. \

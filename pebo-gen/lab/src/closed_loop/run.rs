@@ -10,6 +10,7 @@
 use std::ops::ControlFlow;
 
 use pebo_design::program::{Interpreter, Program};
+use pebo_runtime::unwrapped;
 
 use super::baseline::Follower;
 use super::failure::Failure;
@@ -300,6 +301,10 @@ impl<'a> LoopState<'a> {
         if !arrives {
             self.driver.miss(u, step);
             return Ok(());
+        }
+        // The sensor of an angle reads it within a turn.
+        for (angle, period) in y.iter_mut().zip(&self.scenario.design.periods) {
+            *angle = unwrapped(*angle, 0.0, *period);
         }
         match self.driver.arrive(y, u, step, hat) {
             Err(fault) if self.driver.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),

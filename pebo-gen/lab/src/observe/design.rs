@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{Derivation, LeftInverse, RegressionKind};
-use pebo_design::program::{Program, lower};
+use pebo_design::program::{Interpreter, Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::certainty::Wanted;
@@ -34,6 +34,8 @@ pub(crate) struct Design {
     pub(crate) instants: usize,
     /// True for a generalised cascade.
     pub(crate) is_generalised: bool,
+    /// The periods of the outputs, 0 for one that is no angle.
+    pub(crate) periods: Vec<f64>,
     /// From y, u to h, then Lambda by rows in a generalised cascade.
     pub(crate) cascade: Program,
     /// From the extension, y, u to the known side of the regression, then the factor of the unknowns by rows.
@@ -95,7 +97,12 @@ impl Design {
         };
         let starts = primitives.into_iter().filter(|_| settings.output);
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+        let periods = match plant.periods_of_outputs() {
+            Some(periods) => Interpreter::new(&compile(&[], &periods)?).evaluate(|_| f64::NAN).collect(),
+            None => vec![0.0; plant.y.len()],
+        };
         let design = Self {
+            periods,
             equations: regression.phi_0.len(),
             instants,
             is_generalised: cascade.lambda.is_some(),

@@ -138,6 +138,7 @@ struct Derived<X, K, const N: usize> {
     /// The numbers of the extension that the functions read.
     known: usize,
     rows: Vec<usize>,
+    periods: SVector<f64, N>,
     cascade: RefCell<Interpreter>,
     regression: RefCell<Interpreter>,
     primitive: Option<RefCell<Interpreter>>,
@@ -163,6 +164,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             nr: design.equations,
             ne: design.unknowns,
             rows: design.rows.clone(),
+            periods: pad(&design.periods),
             cascade: interpreter(&design.cascade),
             regression: interpreter(&design.regression),
             primitive: design.primitive.as_ref().map(interpreter),
@@ -239,6 +241,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     type U = SVector<Self::Scalar, N>;
     type Terms = SVector<f64, N>;
     const REGRESSION: Regression = K::REGRESSION;
+
+    fn periods(&self) -> SVector<f64, N> {
+        self.periods
+    }
 
     fn terms(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
         *y

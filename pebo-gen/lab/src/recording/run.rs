@@ -22,6 +22,7 @@ use crate::score::Scorer;
 use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary};
 use pebo_design::program::Interpreter;
+use pebo_runtime::unwrapped;
 
 use super::clock::{Clock, Instant};
 use super::failure::Failure;
@@ -84,6 +85,8 @@ struct ReplayState<'a, 'w> {
     values: Vec<f64>,
     /// All values, see [`Layout`](super::layout::Layout).
     table: Vec<f64>,
+    /// The last values of the outputs, with the turns of those that are angles.
+    last_outputs: Vec<Option<f64>>,
     driver: ObserverDriver,
     residuals: residual::ResidualState<'a>,
     errors: (Interpreter, Vec<f64>),
@@ -115,6 +118,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             cells: vec![0.0; signals.wanted.len()],
             values: vec![0.0; signals.program.outputs.len()],
             table: vec![0.0; layout.len()],
+            last_outputs: vec![None; layout.y.len()],
             driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
@@ -181,6 +185,15 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         let layout = &self.replay.layout;
         let outputs = layout.y.end;
         self.table[..outputs].copy_from_slice(&signals[..outputs]);
+        let periods = &self.replay.design.periods;
+        for ((angle, last), period) in self.table[layout.y.clone()].iter_mut().zip(&mut self.last_outputs).zip(periods)
+        {
+            if angle.is_finite() {
+                // Until the first one, the recorded angle is the last.
+                *angle = unwrapped(*angle, last.unwrap_or(*angle), *period);
+                *last = Some(*angle);
+            }
+        }
         let inputs = signals[outputs..].to_vec();
         let accepted = self.sample(t, dt, &inputs);
         for (input, value) in inputs.into_iter().enumerate() {

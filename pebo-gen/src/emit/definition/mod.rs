@@ -70,6 +70,9 @@ pub(super) const INSTANTS: &str = "NI";
 /// The function that a mechanical model has besides those of `Model`.
 pub(super) const VELOCITY: &str = "velocity";
 
+/// The periods of the outputs, of a model with outputs that are angles.
+pub(super) const PERIODS: &str = "periods";
+
 /// One function.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
@@ -90,7 +93,8 @@ pub(super) struct Group<'d> {
 
 /// The functions of `Model` by name: their arguments, `Y` for the terms of the sample, and the definitions whose values
 /// they give.
-pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 6] = [
+pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 7] = [
+    (PERIODS, &[], &[PERIODS]),
     ("flow", &[Y, U], &["h", "lambda"]),
     ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
     ("primitive", &[Extension, Y], &["primitive_0", "primitive_1"]),
@@ -163,7 +167,9 @@ impl<'a> Definitions<'a> {
             shape: Shape::Matrix(rows, columns),
             rows: entries.to_vec(),
         };
-        let mut functions = vec![vector("h", "NZ", cascade.h.clone())];
+        let periods = plant.periods_of_outputs().map(|periods| vector(PERIODS, "NY", periods));
+        let mut functions = Vec::from_iter(periods);
+        functions.push(vector("h", "NZ", cascade.h.clone()));
         if derivation.class == Class::Gpebo {
             let lambda = cascade.lambda.as_ref().ok_or(EmitError::Missing("lambda"))?;
             functions.push(matrix("lambda", "NZ", "NZ", lambda));

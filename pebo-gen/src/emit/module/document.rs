@@ -8,7 +8,7 @@ use super::abbreviation::Abbreviations;
 use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
-use crate::emit::definition::{Argument, Definitions, Group, INSTANTS, VELOCITY};
+use crate::emit::definition::{Argument, Definitions, Group, INSTANTS, PERIODS, VELOCITY};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
 use pebo_design::plant::Plant;
@@ -378,6 +378,7 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
              written by columns."
         }
         "theta" => "The constant `theta`, from the unknowns of the regression.",
+        PERIODS => "The periods of the outputs that are angles, 0 for the others: the observer counts their turns.",
         VELOCITY => {
             "The velocities `M^-1 p`, which are the rates of the outputs, from the coordinates `z`. An observer has its \
              estimate of `z` as `extension().coordinates(&theta())`, and the terms of its last sample as `terms()`."

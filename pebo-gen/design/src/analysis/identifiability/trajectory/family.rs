@@ -134,19 +134,21 @@ impl TrajectoryProblem<'_> {
         let &Self { plant, cascade, domain, .. } = self;
         let arena = &plant.arena;
         let known = domain.manifold.reduced(arena);
-        let named = |own: &[Expr], _| {
-            TrajectoryCondition::Zero(own.iter().copied().filter(|equation| !known.contains(equation)).collect())
+        let declared = |symbol: Symbol| plant.is_of_extension(symbol) || plant.declares(symbol);
+        // The rate of an input that is zero at all times is zero too.
+        let is_implied = |equation: Expr, own: &[Expr]| {
+            own.len() > 1 && arena.as_symbol(equation).is_some_and(|symbol| !declared(symbol))
         };
-        let mut open = vec![(domain.clone(), vec![zero], None)];
+        let named = |own: &[Expr], _| {
+            let own = own.iter().copied().filter(|equation| !known.contains(equation));
+            let own: Vec<Expr> = own.collect();
+            TrajectoryCondition::Zero(own.iter().copied().filter(|equation| !is_implied(*equation, &own)).collect())
+        };
+        let mut open = vec![(domain.clone(), vec![zero])];
         let mut found = Vec::new();
         for _ in 0..=plant.x.len() + plant.y.len() {
-            for (domain, equations, condition) in std::mem::take(&mut open) {
-                let mut families = self.families_of(&domain, &equations, held, named)?;
-                // What vanishes at all times vanishes with its rates: they add nothing to its condition.
-                if let ([family], Some(condition)) = (families.as_mut_slice(), condition) {
-                    family.condition = condition;
-                }
-                for family in families {
+            for (domain, equations) in std::mem::take(&mut open) {
+                for family in self.families_of(&domain, &equations, held, named)? {
                     let there = &family.domain;
                     let flow = Flow::along(plant, there, cascade, held, &BTreeMap::new())?;
                     let moves = |expr: Expr| {
@@ -155,7 +157,7 @@ impl TrajectoryProblem<'_> {
                     };
                     let rates: Vec<Expr> = there.manifold.reduced(arena).into_iter().filter_map(moves).collect();
                     if !rates.is_empty() {
-                        open.push((family.domain, rates, Some(family.condition)));
+                        open.push((family.domain, rates));
                     } else if plant.rates().into_keys().any(|signal| moves(arena.of_symbol(signal)).is_some()) {
                         found.push(family);
                     }
