@@ -7,7 +7,6 @@ mod analytic;
 pub mod bounds;
 pub mod cells;
 mod components;
-mod extremes;
 mod implied;
 pub mod injectivity;
 mod jump;
@@ -23,6 +22,7 @@ use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::number::interval::Precision;
 use crate::{Facts, Rational, Relation};
+use bounds::Ranges;
 use manifold::{Choice, Manifold};
 
 /// The greatest number of points that a search examines.
@@ -139,7 +139,7 @@ impl Domain {
     }
 
     /// The bounds of symbols that the facts state directly, rounded outward.
-    pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
+    pub fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> Ranges {
         let facts: Vec<_> = self.facts.iter().collect();
         let ranges = ranges(arena, &facts);
         let both = |(symbol, range): (Symbol, Bounds)| Some((symbol, (range.low?, range.high?)));
