@@ -12,7 +12,9 @@ mod crossing;
 mod divided;
 mod excitation;
 mod flow;
+mod joined;
 mod never;
+mod regimes;
 mod singular;
 
 use crate::plant::Plant;
@@ -29,6 +31,9 @@ use self::never::never;
 use self::singular::{Volume, ZeroSet};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
+
+/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
+const SHARE_OF_REMARKS: u64 = 8;
 
 /// Decides how the unknowns are identified.
 pub(super) fn prove(
@@ -57,7 +62,7 @@ pub(super) fn prove(
     let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
         where_analytic(plant, domain, cascade, regression, left_inverse, found)
     };
-    let mut claim = divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
+    let mut claim = regimes::decide(plant, domain, (cascade, regression), &formulas, found, on)
         .unwrap_or_else(|obstacle| open(plant, &obstacle, found));
     if let Some(trajectories) = claim.result.as_mut().and_then(|result| result.trajectories.as_mut()) {
         trajectory::rest::add(trajectories, plant, domain, cascade, regression);
@@ -151,8 +156,8 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
-        // Remarks on trajectories do not use up the budget of the other claims.
-        let (trajectories, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
+        let (trajectories, constants) =
+            arena.budget().share(SHARE_OF_REMARKS, || trajectory::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
             result.trajectories = Some(trajectories);
@@ -264,7 +269,8 @@ fn of_theta(
 fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
     let arena = &plant.arena;
     let found = || Volume::of(arena, domain, rows)?.zero_set(plant, domain);
-    let ZeroSet { signals, zeros, constants, all, joint } = arena.budget().share(8, found).unwrap_or_default();
+    let ZeroSet { signals, zeros, constants, all, joint } =
+        arena.budget().share(SHARE_OF_REMARKS, found).unwrap_or_default();
     let hidden = plant.hidden();
     let (known, other): (Vec<_>, Vec<_>) =
         signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));
