@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, TrajectoryCondition};
+use crate::analysis::identifiability::SHARE_OF_REMARKS;
 use crate::analysis::identifiability::flow::Flow;
 use pebo_cas::domain::cells::Cell;
 use pebo_cas::domain::manifold::Manifold;
@@ -14,9 +15,6 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::problem::{Observation, Restriction, TrajectoryProblem};
-
-/// The share of the remaining budget for the trajectories on which one expression is zero.
-const SHARE: u64 = 8;
 
 /// Trajectories on which the rows are analytic.
 pub(super) struct Family {
@@ -93,7 +91,7 @@ impl TrajectoryProblem<'_> {
         held: &BTreeSet<Symbol>,
         listed: &[BlindTrajectory],
     ) -> Result<(Vec<BlindTrajectory>, bool), Obstacle> {
-        let families = self.plant.arena.budget().share(SHARE, || self.invariant(zero, held))?;
+        let families = self.plant.arena.budget().share(SHARE_OF_REMARKS, || self.invariant(zero, held))?;
         // Zeros within one that identifies all unknowns were not worked out.
         let all = families.iter().all(|family| !family.observed.hidden.is_empty());
         let is_listed = |family: &Family| {

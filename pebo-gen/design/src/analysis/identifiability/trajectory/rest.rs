@@ -8,6 +8,7 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
+use crate::analysis::identifiability::SHARE_OF_REMARKS;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::Side;
 use pebo_cas::tower::Obstacle;
@@ -15,9 +16,6 @@ use pebo_cas::{Domain, Expr, Symbol};
 
 use super::family::Family;
 use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
-
-/// The share of the remaining budget for equilibria, as for other trajectories.
-const SHARE: u64 = 8;
 
 /// Adds to the trajectories of a regression those at equilibria.
 pub(in crate::analysis::identifiability) fn add(
@@ -44,8 +42,7 @@ pub(in crate::analysis::identifiability) fn add(
     };
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let held = problem.signals_at_rest();
-    // Remarks on equilibria do not use up the budget of the other claims.
-    let rest = plant.arena.budget().share(SHARE, || match problem.families(&held) {
+    let rest = plant.arena.budget().share(SHARE_OF_REMARKS, || match problem.families(&held) {
         Ok(families) => problem.joined(&families, &trajectories.blind, &held),
         Err(_) => problem.at_constant_signals(&held),
     });
