@@ -134,5 +134,10 @@ mod tests {
                 Domain::default().branches_above(&arena, expr).iter().map(|e| arena.print(*e)).collect();
             assert_eq!(found, expected, "{}", arena.print(expr));
         }
+        let small = arena.sub(one, arena.mul(u, call(Function::Abs, &[q])));
+        assert!(Domain::default().branches_above(&arena, small).is_empty());
+        let mut domain = Domain::default();
+        domain.facts.assume(u, Relation::Positive);
+        assert_eq!(domain.branches_above(&arena, small).len(), 2);
     }
 }

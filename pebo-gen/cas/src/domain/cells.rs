@@ -339,6 +339,19 @@ mod tests {
     }
 
     #[test]
+    fn a_wall_is_between_cells_that_one_divider_tells_apart() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let (above, below) = (|e| (e, Side::Positive), |e| (e, Side::Negative));
+        assert_eq!(wall_between(&[above(a), above(b)], &[above(a), below(b)]), Some(b));
+        assert_eq!(wall_between(&[above(a), above(b)], &[below(a), below(b)]), None);
+        assert_eq!(wall_between(&[above(a), above(b)], &[above(a), above(b)]), None);
+        // A side that the others imply is not written.
+        assert_eq!(wall_between(&[above(a), above(b)], &[below(a)]), Some(a));
+        assert_eq!(wall_between(&[above(a)], &[below(b), above(c)]), None);
+    }
+
+    #[test]
     fn absolute_values_are_found_in_any_form() {
         let by_logarithm = |arena: &Arena, [a, _]: [Expr; 2]| {
             let log = arena.call(Function::Log, &[arena.mul(a, a)]);
