@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::domain::Ranges;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Symbol};
 use crate::number::interval::{Interval, Precision};
@@ -17,9 +18,6 @@ const MOST_BOXES: usize = 4096;
 
 /// Bits of the enclosures: the width of a box matters more.
 const PRECISION: Precision = Precision::new(64);
-
-/// A closed range for each symbol.
-pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 impl Domain {
     /// The sign of the expression throughout the domain: positive (true) or negative (false).

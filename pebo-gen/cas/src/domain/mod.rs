@@ -22,7 +22,6 @@ use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::number::interval::Precision;
 use crate::{Facts, Rational, Relation};
-use bounds::Ranges;
 use manifold::{Choice, Manifold};
 
 /// The greatest number of points that a search examines.
@@ -52,6 +51,9 @@ pub struct Domain {
     /// Calls and roots that the author writes: results may be printed with them.
     pub written: Rc<BTreeSet<Expr>>,
 }
+
+/// A closed range for each symbol.
+pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 /// Bounds of one symbol that the facts state directly.
 #[derive(Clone, Debug, Default)]

@@ -12,10 +12,9 @@ use pebo_cas::domain::cells::{Cell, walls};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
-use super::SHARE_OF_REMARKS;
 use super::crossing::{CellRows, all_identified, driven};
 use super::joined::Joined;
-use super::trajectory::{TrajectoryProblem, identifiable};
+use super::trajectory::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 use crate::analysis::design::{
     BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, TrajectoryCondition, Verdict,
 };

@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use crate::plant::Plant;
-use pebo_cas::domain::bounds::{Ranges, sign_on_box};
+use pebo_cas::domain::Ranges;
+use pebo_cas::domain::bounds::sign_on_box;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};

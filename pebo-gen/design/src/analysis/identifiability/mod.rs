@@ -29,11 +29,9 @@ use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
 use self::never::never;
 use self::singular::{Volume, ZeroSet};
+use self::trajectory::SHARE_OF_REMARKS;
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
-
-/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
-const SHARE_OF_REMARKS: u64 = 8;
 
 /// Decides how the unknowns are identified.
 pub(super) fn prove(

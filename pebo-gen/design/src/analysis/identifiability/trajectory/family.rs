@@ -6,7 +6,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, TrajectoryCondition};
-use crate::analysis::identifiability::SHARE_OF_REMARKS;
 use crate::analysis::identifiability::flow::Flow;
 use pebo_cas::domain::cells::Cell;
 use pebo_cas::domain::manifold::Manifold;
@@ -14,7 +13,7 @@ use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
-use super::problem::{Observation, Restriction, TrajectoryProblem};
+use super::problem::{Observation, Restriction, SHARE_OF_REMARKS, TrajectoryProblem};
 
 /// Trajectories on which the rows are analytic.
 pub(super) struct Family {

@@ -22,7 +22,6 @@ pub(in crate::analysis) mod words;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
-use crate::analysis::identifiability::SHARE_OF_REMARKS;
 use crate::plant::Plant;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
@@ -30,7 +29,7 @@ use pebo_cas::{Domain, Expr, Symbol};
 use losses::is_listed;
 use problem::{Observation, Restriction};
 
-pub(super) use problem::{TrajectoryProblem, identifiable};
+pub(super) use problem::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// The necessary motion, and combinations of the parameters whose zeros lower the rank.
 pub(super) fn of(

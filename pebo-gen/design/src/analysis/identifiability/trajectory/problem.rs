@@ -9,6 +9,9 @@ use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
+/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
+pub(in crate::analysis::identifiability) const SHARE_OF_REMARKS: u64 = 8;
+
 /// Size of the rows with their derivatives up to which exact algebra is done on them: directions, determinants.
 const MOST_PARTS: usize = 600;
 

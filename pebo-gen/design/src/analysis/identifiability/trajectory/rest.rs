@@ -8,14 +8,13 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
-use crate::analysis::identifiability::SHARE_OF_REMARKS;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::Side;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use super::family::Family;
-use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
+use super::problem::{Observation, Restriction, SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// Adds to the trajectories of a regression those at equilibria.
 pub(in crate::analysis::identifiability) fn add(
