@@ -25,6 +25,23 @@ impl Domain {
         exprs.iter().map(|expr| known[expr]).collect()
     }
 
+    /// The branches of an expression that are nowhere less than it: `1 - |q|` is at most `1 - q` and `1 + q`. They are
+    /// positive where it is, and their implications are easier to find.
+    pub fn branches_above(&self, arena: &Arena, expr: Expr) -> Vec<Expr> {
+        if arena.dividers(&[expr]).is_empty() {
+            return Vec::new();
+        }
+        let cells = Self::default().cells(arena, &[expr], |_| true).unwrap_or_default();
+        let mut above = Vec::new();
+        for branch in cells.iter().map(|cell| cell.domain.analytic(arena, &[expr])[0]) {
+            let is_above = || self.implies(arena, arena.sub(branch, expr), Relation::NonNegative);
+            if branch != expr && !above.contains(&branch) && is_above() {
+                above.push(branch);
+            }
+        }
+        above
+    }
+
     /// The domain with its equations by the branches that its inequalities imply.
     pub(super) fn with_branches(self, arena: &Arena) -> Self {
         let written = self.manifold.equations();
@@ -66,6 +83,7 @@ impl Domain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rational;
 
     #[test]
     fn operations_are_their_branches_where_the_domain_has_one() {
@@ -89,5 +107,37 @@ mod tests {
         // A function of a function.
         let inner = arena.sub(call(Function::Abs, &[a]), a);
         assert_eq!(on(a, call(Function::Max, &[inner, minus(a)])), "0");
+    }
+
+    #[test]
+    fn branches_bound_an_extreme_on_one_side() {
+        let arena = Arena::new();
+        let [q, u] = ["q", "u"].map(|name| arena.variable(name));
+        let call = |function, arguments: &[Expr]| arena.call(function, arguments);
+        let one = arena.one();
+        let cases = [
+            (arena.sub(one, call(Function::Abs, &[q])), vec!["1 - q", "q + 1"]),
+            (arena.sub(one, call(Function::Max, &[q, u])), vec!["1 - q", "1 - u"]),
+            (call(Function::Min, &[q, u]), vec!["u", "q"]),
+            (arena.scale(call(Function::Min, &[q, u]), &Rational::from(2)), vec!["2*u", "2*q"]),
+            (
+                arena.sum([one, arena.neg(call(Function::Abs, &[q])), arena.neg(call(Function::Abs, &[u]))]),
+                vec!["1 - q - u", "1 - q + u", "q - u + 1", "q + u + 1"],
+            ),
+            // A large absolute value implies nothing of its argument.
+            (arena.sub(call(Function::Abs, &[q]), one), vec![]),
+            (arena.neg(call(Function::Min, &[q, u])), vec![]),
+            (arena.mul(u, call(Function::Abs, &[q])), vec![]),
+        ];
+        for (expr, expected) in cases {
+            let found: Vec<String> =
+                Domain::default().branches_above(&arena, expr).iter().map(|e| arena.print(*e)).collect();
+            assert_eq!(found, expected, "{}", arena.print(expr));
+        }
+        let small = arena.sub(one, arena.mul(u, call(Function::Abs, &[q])));
+        assert!(Domain::default().branches_above(&arena, small).is_empty());
+        let mut domain = Domain::default();
+        domain.facts.assume(u, Relation::Positive);
+        assert_eq!(domain.branches_above(&arena, small).len(), 2);
     }
 }

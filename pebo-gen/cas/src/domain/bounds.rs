@@ -6,20 +6,18 @@
 
 use std::collections::BTreeMap;
 
+use crate::domain::Ranges;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Symbol};
 use crate::number::interval::{Interval, Precision};
 use crate::number::rational::half;
 use crate::{Domain, Rational};
 
-/// The greatest number of boxes for one sign of the normal form.
-const MOST_BOXES: usize = 256;
+/// The greatest number of boxes for one sign.
+const MOST_BOXES: usize = 4096;
 
 /// Bits of the enclosures: the width of a box matters more.
 const PRECISION: Precision = Precision::new(64);
-
-/// A closed range for each symbol.
-pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 impl Domain {
     /// The sign of the expression throughout the domain: positive (true) or negative (false).
@@ -30,22 +28,26 @@ impl Domain {
         }
         let ranges = self.bounds(arena, &symbols);
         let whole: Ranges = symbols.iter().map(|s| Some((*s, ranges.get(s)?.clone()))).collect::<Option<_>>()?;
-        sign_on_box(arena, expr, whole, MOST_BOXES)
+        sign_on_box(arena, expr, whole)
     }
 }
 
-/// The sign of the expression on the whole box: positive (true) or negative (false), by division into at most so many
-/// boxes.
-pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges, most: usize) -> Option<bool> {
+/// The sign of the expression on the whole box: positive (true) or negative (false), by division into smaller ones.
+pub fn sign_on_box(arena: &Arena, expr: Expr, whole: Ranges) -> Option<bool> {
     // Most expressions without a sign show it at a corner, where they are zero or have another sign.
-    let mut corners = corners(&whole).into_iter().map(|corner| sign(arena, expr, &corner));
-    let first = corners.next()??;
-    if !corners.all(|other| other == Some(first)) {
+    let corner = |upper: bool| {
+        let at = |(symbol, (low, high)): (&Symbol, &(Rational, Rational))| {
+            let end = if upper { high } else { low };
+            (*symbol, (end.clone(), end.clone()))
+        };
+        sign(arena, expr, &whole.iter().map(at).collect())
+    };
+    if corner(false)? != corner(true)? {
         return None;
     }
     let mut open = vec![whole];
     let mut found: Option<bool> = None;
-    for _ in 0..=most {
+    for _ in 0..=MOST_BOXES {
         let Some(part) = open.pop() else { return found };
         match sign(arena, expr, &part) {
             Some(sign) if found.is_none_or(|known| known == sign) => found = Some(sign),
@@ -66,21 +68,6 @@ fn sign(arena: &Arena, expr: Expr, part: &Ranges) -> Option<bool> {
     }
     let value = arena.enclose_over(&[expr], &values, PRECISION)?.pop()?;
     (!value.contains_zero()).then(|| value.is_positive())
-}
-
-/// Points of the box: all its corners where these are few, else two opposite ones.
-fn corners(whole: &Ranges) -> Vec<Ranges> {
-    const MOST_SIDES: usize = 3;
-    let sides: Vec<Symbol> = whole.iter().filter(|(_, (low, high))| low != high).map(|(symbol, _)| *symbol).collect();
-    let end = |upper: bool, (low, high): &(Rational, Rational)| {
-        if upper { (high.clone(), high.clone()) } else { (low.clone(), low.clone()) }
-    };
-    let at = |upper: &dyn Fn(Symbol) -> bool| whole.iter().map(|(s, ends)| (*s, end(upper(*s), ends))).collect();
-    if sides.len() > MOST_SIDES {
-        return vec![at(&|_| false), at(&|_| true)];
-    }
-    let side = |symbol| sides.iter().position(|s| *s == symbol).unwrap_or(sides.len());
-    (0..1_u32 << sides.len()).map(|corner| at(&|symbol| corner >> side(symbol) & 1 == 1)).collect()
 }
 
 /// The box cut in two across its widest side; none if it is a point.

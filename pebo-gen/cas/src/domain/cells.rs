@@ -12,8 +12,9 @@ use crate::graph::function::Function;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Facts, Rational, Relation};
 
-/// The greatest number of cells that are examined one by one: three saturations divide a domain into 27.
-const MOST_CELLS: usize = 32;
+/// The greatest number of cells that are examined one by one: three saturations divide a domain into 27, and an equation
+/// each of them into two components.
+pub(super) const MOST_CELLS: usize = 54;
 
 /// A cell of a domain.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub struct Cell {
 }
 
 /// The sign of a dividing expression.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Side {
     /// `> 0`
     Positive,
@@ -189,6 +190,26 @@ impl Domain {
     }
 }
 
+/// The expressions that divide cells, in the order of the cells.
+pub fn walls(cells: &[Cell]) -> Vec<Expr> {
+    let mut found = Vec::new();
+    for (divider, _) in cells.iter().flat_map(|cell| &cell.sides) {
+        if !found.contains(divider) {
+            found.push(*divider);
+        }
+    }
+    found
+}
+
+/// The expression that alone has other signs on the one side of a wall than on the other.
+pub fn wall_between(own: &[(Expr, Side)], other: &[(Expr, Side)]) -> Option<Expr> {
+    let is_opposed =
+        |(divider, side): &&(Expr, Side)| other.iter().any(|(same, there)| same == divider && there != side);
+    let mut opposed = own.iter().filter(is_opposed);
+    let (wall, _) = opposed.next()?;
+    opposed.next().is_none().then_some(*wall)
+}
+
 impl Cell {
     /// The sides that determine the cell within a domain, and with its own equations: none of them follows from the
     /// others.
@@ -315,6 +336,19 @@ mod tests {
         assert_eq!(cells(&[], both).len(), 4);
         // Three of four: a > 1 and a < -1 exclude each other.
         assert_eq!(cells(&[], |arena, [a, _]| arena.call(Function::Sat, &[a])).len(), 3);
+    }
+
+    #[test]
+    fn a_wall_is_between_cells_that_one_divider_tells_apart() {
+        let arena = Arena::new();
+        let [a, b, c] = ["a", "b", "c"].map(|name| arena.variable(name));
+        let (above, below) = (|e| (e, Side::Positive), |e| (e, Side::Negative));
+        assert_eq!(wall_between(&[above(a), above(b)], &[above(a), below(b)]), Some(b));
+        assert_eq!(wall_between(&[above(a), above(b)], &[below(a), below(b)]), None);
+        assert_eq!(wall_between(&[above(a), above(b)], &[above(a), above(b)]), None);
+        // A side that the others imply is not written.
+        assert_eq!(wall_between(&[above(a), above(b)], &[below(a)]), Some(a));
+        assert_eq!(wall_between(&[above(a)], &[below(b), above(c)]), None);
     }
 
     #[test]

@@ -9,17 +9,13 @@
 
 use std::collections::BTreeSet;
 
-use super::cells::{Cell, Side};
+use super::cells::{Cell, MOST_CELLS, Side};
 use super::manifold::Manifold;
 use super::reducible::{Factors, factors};
 use super::zero::decide;
 use crate::graph::expr::{Expr, Symbol};
 use crate::tower::Obstacle;
 use crate::{Arena, Domain, Relation};
-
-/// The greatest number of cells that are examined one by one: three signs of each of three dividers, with two
-/// components in each.
-const MOST_CELLS: usize = 54;
 
 /// A cell whose equations are still to be taken apart.
 struct OpenCell {

@@ -11,9 +11,6 @@ use crate::graph::function::Function;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Domain, Facts, Rational, Relation};
 
-/// The greatest number of non-smooth points of an expression that are examined, each from both sides.
-const MOST_BORDERS: usize = 2;
-
 /// The signs that a value has at some points.
 #[derive(Default)]
 struct SampledSigns {
@@ -29,11 +26,6 @@ impl Domain {
 
     /// True if the facts prove that the expression compares so with zero, wherever it has a value.
     pub fn implies(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
-        self.implies_across(arena, expr, relation, MOST_BORDERS)
-    }
-
-    /// The same with an examination of both sides of so many non-smooth points of the expression.
-    fn implies_across(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
         if self.facts.iter().any(|(fact, known)| fact == expr && (known == relation || known == Relation::Positive)) {
             return true;
         }
@@ -58,8 +50,9 @@ impl Domain {
             || (signed && !self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
             || divides()
             || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
-            || (signed && borders > 0 && self.implies_on_both_sides(arena, expr, relation, borders - 1))
-            || (signed && self.implies_of_combined_angles(arena, expr, relation))
+            || (signed
+                && (self.implies_on_both_sides(arena, expr, relation)
+                    || self.implies_of_combined_angles(arena, expr, relation)))
     }
 
     /// True if the expression compares so in angles of its own for the sums of which it takes sines and cosines:
@@ -94,21 +87,20 @@ impl Domain {
         for ((_, relation), fact) in self.facts.iter().zip(all) {
             free.facts.assume(fact, relation);
         }
-        free.implies_across(arena, expr, relation, 0)
+        free.implies(arena, expr, relation)
     }
 
-    /// True if the expression compares so on either side of a non-smooth point: there it has no absolute value of a
-    /// term that changes sign. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
-    fn implies_on_both_sides(&self, arena: &Arena, expr: Expr, relation: Relation, borders: usize) -> bool {
+    /// True if the expression compares so on either side of each of its non-smooth points: there it has no absolute
+    /// value of a term that changes sign. `max(q, 1)` is q where that is at least 1, and 1 elsewhere.
+    fn implies_on_both_sides(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
         let sides = |divider: Expr| [divider, arena.neg(divider)];
-        let is_open = |divider: &Expr| {
-            !sides(*divider).into_iter().any(|side| self.implies_across(arena, side, Relation::NonNegative, 0))
-        };
+        let is_open =
+            |divider: &Expr| !sides(*divider).into_iter().any(|side| self.implies(arena, side, Relation::NonNegative));
         let Some(divider) = arena.dividers(&[expr]).into_iter().find(is_open) else { return false };
         sides(divider).into_iter().all(|side| {
             let mut there = self.clone();
             there.facts.assume(side, Relation::NonNegative);
-            there.implies_across(arena, expr, relation, borders)
+            there.implies(arena, expr, relation)
         })
     }
 
@@ -201,11 +193,9 @@ impl Arena {
     }
 }
 
-/// The square of a short fraction, if that is more than a product: `sin(q)` has `1 - cos(q)^2`.
+/// The square of a fraction, if that is more than a product: `sin(q)` has `1 - cos(q)^2`.
 fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
-    const MOST_TERMS: usize = 16;
-    let is_worth_it = fraction.weight() <= MOST_TERMS && field.has_relations(fraction);
-    is_worth_it.then(|| field.mul(fraction, fraction)).transpose()
+    field.has_relations(fraction).then(|| field.mul(fraction, fraction)).transpose()
 }
 
 #[cfg(test)]

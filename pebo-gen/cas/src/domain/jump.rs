@@ -2,8 +2,11 @@
 //!
 //! In: a domain and a function with absolute values, signs, least and greatest values. Out: the borders at which the
 //! function is not proved continuous, each with the difference of its one-sided values: `q*sign(q - 1)` jumps by 2 at q
-//! = 1, and `abs(q - 1)` nowhere. A border in which no symbol is affine is examined in normal forms.
+//! = 1, and `abs(q - 1)` nowhere. A border that is not solved for a symbol is examined in normal forms.
 
+use std::collections::BTreeSet;
+
+use super::manifold::Manifold;
 use super::zero::decide;
 use crate::graph::conditions::Regularity;
 use crate::graph::expr::{Expr, Node};
@@ -30,13 +33,9 @@ impl Domain {
         };
         for border in self.dividers(arena, &[expr])?.into_iter().filter(is_open) {
             let [above, below] = [self.on_side(arena, expr, border), self.on_side(arena, expr, arena.neg(border))];
-            let by = match crossing(arena, border) {
-                Some(place) => {
-                    let at = |side: Expr| arena.substitute(side, &[place].into());
-                    arena.sub(at(above), at(below))
-                }
-                None => arena.sub(above, below),
-            };
+            let symbols = vec![BTreeSet::new(), arena.symbols_of(&[border]), BTreeSet::new()];
+            let wall = Manifold::new(arena, &self.facts, vec![border], symbols).determined();
+            let by = arena.sub(arena.substitute(above, &wall), arena.substitute(below, &wall));
             if !decide(arena, by, self).is_zero() && !self.vanishes_with(arena, by, border).unwrap_or(false) {
                 jumps.push(Jump { border, by: Some(by) });
             }
@@ -77,18 +76,6 @@ fn bounded_poles(arena: &Arena, expr: Expr) -> Vec<Expr> {
     let arguments: Vec<Expr> = arguments.flatten().collect();
     let conditions = arena.domain_conditions(&arguments, Regularity::Defined).into_iter();
     conditions.filter(|(_, relation)| *relation == Relation::NonZero).map(|(denominator, _)| denominator).collect()
-}
-
-/// The symbol in which a border is affine, and its value there.
-fn crossing(arena: &Arena, border: Expr) -> Option<(crate::Symbol, Expr)> {
-    arena.symbols_of(&[border]).into_iter().find_map(|symbol| {
-        let slope = arena.derivative(border, symbol);
-        if !arena.symbols_of(&[slope]).is_empty() || arena.is_zero(slope) {
-            return None;
-        }
-        let rest = arena.substitute(border, &[(symbol, arena.zero())].into());
-        Some((symbol, arena.neg(arena.div(rest, slope))))
-    })
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ pub mod bounds;
 pub mod cells;
 mod certified;
 mod components;
-mod extremes;
 mod implied;
 pub mod injectivity;
 mod jump;
@@ -58,6 +57,9 @@ pub struct Domain {
     /// Calls and roots that the author writes: results may be printed with them.
     pub written: Rc<BTreeSet<Expr>>,
 }
+
+/// A closed range for each symbol.
+pub type Ranges = BTreeMap<Symbol, (Rational, Rational)>;
 
 /// Bounds of one symbol that the facts state directly.
 #[derive(Clone, Debug, Default)]
@@ -152,7 +154,7 @@ impl Domain {
     }
 
     /// The bounds of symbols that the facts state directly, rounded outward.
-    pub(super) fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> BTreeMap<Symbol, (Rational, Rational)> {
+    pub fn bounds(&self, arena: &Arena, symbols: &BTreeSet<Symbol>) -> Ranges {
         let facts: Vec<_> = self.facts.iter().collect();
         let ranges = ranges(arena, &facts);
         let both = |(symbol, range): (Symbol, Bounds)| Some((symbol, (range.low?, range.high?)));

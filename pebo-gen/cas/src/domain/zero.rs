@@ -21,9 +21,6 @@ pub const MOST_POINTS: usize = 64;
 /// Points that are evaluated at the least precision before the normal form.
 const GLIMPSES: usize = 3;
 
-/// Subexpressions of a short formula.
-const SHORT: usize = 50;
-
 /// The answer of the zero test.
 #[derive(Clone, Debug)]
 pub enum Answer {
@@ -81,11 +78,9 @@ fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }
-    // A cheap trial first: a plainly non-zero expression needs no normal form. For a short formula the normal form
-    // costs no more than another trial.
-    let glimpses = if arena.postorder(&[expr]).len() < SHORT { 1 } else { GLIMPSES };
+    // A cheap trial first: a plainly non-zero expression needs no normal form.
     let mut exists = false;
-    for point in domain.points(arena, &[expr]).take(glimpses) {
+    for point in domain.points(arena, &[expr]).take(GLIMPSES) {
         let Some(value) = arena.enclose(expr, &point, Precision::new(64)) else { continue };
         if !value.contains_zero() {
             return Answer::NonZero(Witness { point, value });

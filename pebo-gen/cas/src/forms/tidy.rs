@@ -271,7 +271,7 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
                         found.entry(*inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                     }
                     if exponent.is_negative() && matches!(arena.node(*base), Node::Sum(_) | Node::Call(..)) {
-                        let sine = sine_of_square(arena, *base).map(|sine| (sine, &times_each + &times_each));
+                        let sine = arena.sine_of_square(*base).map(|sine| (sine, &times_each + &times_each));
                         for (inner, times) in sine.into_iter().chain([(*base, times_each)]) {
                             found.entry(inner).and_modify(|sum| *sum = &*sum + &times).or_insert(times);
                         }
@@ -290,17 +290,6 @@ fn divisors(arena: &Arena, expr: Expr) -> BTreeMap<Expr, Rational> {
         known.insert(e, found);
     }
     known.remove(&expr).unwrap_or_default()
-}
-
-/// `sin(q)`, from `cos(q)^2 - 1` or a multiple of it.
-fn sine_of_square(arena: &Arena, expr: Expr) -> Option<Expr> {
-    let Node::Sum(sum) = arena.node(expr) else { return None };
-    let [(term, slope)] = sum.terms.as_slice() else { return None };
-    let Node::Product(product) = arena.node(*term) else { return None };
-    let [(base, power)] = product.factors.as_slice() else { return None };
-    let Node::Call(Function::Cos, arguments) = arena.node(*base) else { return None };
-    let is_square = *power == Rational::from(2) && *slope == -&sum.constant;
-    is_square.then(|| arena.call(Function::Sin, &arguments))
 }
 
 /// The shortest of equal forms in the functions of the author's formula; the first if none keeps to them.

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::graph::expr::{Expr, Node};
-use crate::graph::function::Function;
+use crate::graph::expr::Expr;
 use crate::poly::{Monomial, Poly, TooLarge, steps};
 use crate::{Integer, Rational};
 
 use super::Field;
 use super::fraction::{Fraction, primitive};
+use super::sines::SinePower;
 
 /// The numbers of terms for which a polynomial is tested as a power.
 const TERMS_OF_POWERS: std::ops::RangeInclusive<usize> = 3..=200;
@@ -122,25 +122,17 @@ impl Field<'_> {
 
     /// A polynomial without its factors `cos(q)^2 - 1`, and these, to a common power, as `-sin(q)^2`: no digits are
     /// lost where they are small, and a superfluous sine of a divisor cancels.
-    fn sines(&self, mut poly: Poly, sign: i64) -> (Poly, Vec<(Expr, Rational)>) {
+    fn sines(&self, poly: Poly, sign: i64) -> (Poly, Vec<(Expr, Rational)>) {
+        let Ok((mut rest, powers)) = self.without_sines(&poly) else { return (poly, Vec::new()) };
         let mut found = Vec::new();
-        for variable in poly.variables().to_vec() {
-            let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else {
-                continue;
-            };
-            let square = [(Monomial::new([(variable, 2)]), Integer::ONE), (Monomial::new([]), -&Integer::ONE)];
-            let Ok(square) = Poly::from_terms(square) else {
-                continue;
-            };
-            while poly.degree(variable) > 1
-                && let Ok(Some(rest)) = poly.div_exact(&square, self.limit())
-            {
-                poly = rest;
+        for SinePower { sine, times, .. } in powers {
+            if times % 4 == 2 {
+                rest = -&rest;
                 found.push((self.arena.number(-1), Rational::ONE));
-                found.push((self.arena.call(Function::Sin, &arguments), Rational::from(2 * sign)));
             }
+            found.push((self.kernel(sine), Rational::from(i64::from(times) * sign)));
         }
-        (poly, found)
+        (rest, found)
     }
 
     /// The square-free factors with their multiplicities, to a common power; none if that is no shorter, or takes too

@@ -306,7 +306,7 @@ pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[P
     for assumption in assumptions {
         domain.facts.assume(assumption.expr, assumption.relation);
         if assumption.relation != Relation::NonZero {
-            for above in arena.above_extremes(assumption.expr) {
+            for above in domain.branches_above(arena, assumption.expr) {
                 domain.facts.assume(above, assumption.relation);
             }
         }

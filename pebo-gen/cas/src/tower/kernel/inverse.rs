@@ -188,22 +188,6 @@ impl Field<'_> {
             }
         }))
     }
-
-    /// Sine and cosine of half an angle, for an angle within a half circle.
-    ///
-    /// `cos(a/2) = sqrt((1 + cos a)/2)` is not negative for |a| <= pi and not zero for |a| < pi, where
-    /// `sin(a/2) = sin(a) / (2 cos(a/2))`; for 0 <= a <= pi, `sin(a/2) = sqrt((1 - cos a)/2)`.
-    pub(in crate::tower) fn half_of(&self, (sin, cos): &Pair, range: &Range) -> Result<Option<Pair>, Obstacle> {
-        let root = |square: &Fraction| self.root(&self.scale(square, &half())?, &half());
-        let half_cos = root(&self.add(&Fraction::one(), cos)?)?;
-        if range.is_upper_half() {
-            return Ok(Some((root(&self.sub(&Fraction::one(), cos)?)?, half_cos)));
-        }
-        if !range.is_within_half_turn() || half_cos.is_zero() {
-            return Ok(None);
-        }
-        Ok(Some((self.div(&self.scale(sin, &half())?, &half_cos)?, half_cos)))
-    }
 }
 
 fn ratio(n: i32, d: i32) -> Rational {

@@ -5,11 +5,8 @@
 //! cancel (`sin(atan2(a, b)) = a / sqrt(a^2 + b^2)`).
 
 use crate::graph::expr::{Expr, Node};
-use crate::graph::function::Function;
-use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-use super::AlgebraicRelation;
 use super::range::Range;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Family, Field, Obstacle};
@@ -44,21 +41,10 @@ impl Field<'_> {
         let (unit, times) = self.multiple(Family::Angle, key, factor)?;
         let basic = match self.inverse(key, &unit)? {
             Some(pair) => pair,
-            None => self.basic(self.arena.scale(key, &unit)),
+            None => self.kernels_of_angle(self.arena.scale(key, &unit)),
         };
         let (sin, cos) = self.repeated(&basic, times.unsigned_abs())?;
         Ok(if times < 0 { (negated(&sin), cos) } else { (sin, cos) })
-    }
-
-    /// The kernels of a basis angle.
-    fn basic(&self, angle: Expr) -> Pair {
-        let cos = self.enter(self.arena.call(Function::Cos, &[angle]), None, false);
-        let square = Poly::variable(cos);
-        // sin^2 = 1 - cos^2; squaring one variable cannot exceed any limit
-        let value = square.mul(&square, &self.work).map(|square| &Poly::one() - &square);
-        let relation = value.ok().map(|value| AlgebraicRelation { degree: 2, value });
-        let sin = self.entered(self.arena.call(Function::Sin, &[angle]), relation, false);
-        (sin, Fraction::polynomial(Poly::variable(cos)))
     }
 
     /// Sine and cosine of `times` the angle, by repeated doubling.

@@ -2,31 +2,24 @@
 //!
 //! In: cells, none of which identifies all unknowns, with the rows of each. Out: true if every cell has others into
 //! which trajectories pass and with which it identifies them all: a neighbour, or all cells along a signal that is an
-//! input or that an input drives. With `p + s*sign(q)` a trajectory on which q
-//! changes its sign identifies p and s; if q' = q*v there is none. Trajectories pass from one cell into another where
-//! the border function vanishes and moves the same way on both sides. The rows of both cells are taken at one such
-//! point, so that constants of the trajectory are the same in both. A border function of inputs alone changes its sign
-//! at once: then all but the inputs is the same.
+//! input or that an input drives. With `p + s*sign(q)` a trajectory on which q changes its sign identifies p and s; if
+//! q' = q*v there is none. Trajectories pass from one cell into another where the expression of the wall between them
+//! vanishes and moves the same way on both sides. The rows of both cells are taken at one such point, so that constants
+//! of the trajectory are the same in both. A wall of inputs alone is passed at once: then all but the inputs is the same.
 
 use std::collections::BTreeSet;
 
 use crate::analysis::design::Cascade;
 use crate::plant::Plant;
-use pebo_cas::domain::cells::{Cell, Side};
+use pebo_cas::domain::cells::{Cell, Side, wall_between};
 use pebo_cas::domain::manifold::Manifold;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::{MOST_POINTS, decide};
 use pebo_cas::graph::enclosure::Point;
 use pebo_cas::linear::rank::{full_rank, full_rank_at, null_vectors};
 use pebo_cas::tower::{Field, Obstacle};
-use pebo_cas::{Arena, Domain, Expr, Facts, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::flow::Flow;
-
-/// Points of a border that are looked at.
-const MOST_POINTS: usize = 16;
-
-/// Points beyond a border that are looked at for one on this side.
-const FEW_POINTS: usize = 2;
 
 /// A cell and its rows.
 pub(super) struct CellRows<'a> {
@@ -47,12 +40,9 @@ pub(super) fn all_identified(
     let mut identified = along_signals(plant, &varies, cells, unknowns)?;
     for first in 0..cells.len() {
         for second in first + 1..cells.len() {
-            let Some(border) = border(cells[first].cell, cells[second].cell) else { continue };
-            if identified[first] && identified[second] {
-                continue;
-            }
             let pair = [&cells[first], &cells[second]];
-            if passes(plant, cascade, &varies, pair, border, unknowns)? {
+            let is_open = !identified[first] || !identified[second];
+            if is_open && passes(plant, cascade, &varies, pair, unknowns)? {
                 identified[first] = true;
                 identified[second] = true;
             }
@@ -75,9 +65,9 @@ fn along_signals(
     let signals: BTreeSet<Symbol> =
         cells.iter().flat_map(|cell| &cell.cell.sides).filter_map(|(divider, _)| driven(plant, *divider)).collect();
     for signal in signals {
-        let others = |cell: &CellRows<'_>| -> BTreeSet<(Expr, bool)> {
+        let others = |cell: &CellRows<'_>| -> BTreeSet<(Expr, Side)> {
             let sides = cell.cell.sides.iter().filter(|(divider, _)| driven(plant, *divider) != Some(signal));
-            sides.map(|(divider, side)| (*divider, *side == Side::Positive)).collect()
+            sides.copied().collect()
         };
         for (index, cell) in cells.iter().enumerate() {
             let line: Vec<&CellRows<'_>> = cells.iter().filter(|other| others(other) == others(cell)).collect();
@@ -89,46 +79,39 @@ fn along_signals(
             for cell in &line {
                 observed.extend(null_vectors(arena, &cell.cell.domain, &cell.hidden, unknowns)?);
             }
-            identified[index] = full_rank(arena, &plant.assumed(), &observed, unknowns);
+            identified[index] |= full_rank(arena, &plant.assumed(), &observed, unknowns);
         }
     }
     Ok(identified)
 }
 
 /// Tests whether trajectories reach each of the cells along a signal from each other one: an input takes its values at
-/// once; any other signal passes a border where the domain has points on it.
+/// once; any other signal passes a wall where the domain has points on it.
 fn is_connected(plant: &Plant, signal: Symbol, line: &[&CellRows<'_>]) -> bool {
     if plant.u.contains(&signal) {
         return true;
     }
-    let meets = |one: &CellRows<'_>, other: &CellRows<'_>| {
-        let is_apart = |(divider, side): &&(Expr, Side)| {
-            other.cell.sides.iter().any(|(theirs, other)| theirs == divider && other != side)
-        };
-        let mut apart = one.cell.sides.iter().filter(is_apart);
-        let (Some((border, _)), None) = (apart.next(), apart.next()) else { return false };
-        let there = on_border(plant, &one.cell.domain, *border);
-        let other = on_border(plant, &other.cell.domain, *border);
-        [there, other].iter().all(|there| there.points(&plant.arena, &[*border]).next().is_some())
+    let meets = |pair: [&CellRows<'_>; 2]| {
+        wall(pair).is_some_and(|wall| on_wall(plant, pair, wall).points(&plant.arena, &[wall]).next().is_some())
     };
     let mut reached = vec![false; line.len()];
     let mut open = vec![0];
     while let Some(index) = open.pop() {
         if !std::mem::replace(&mut reached[index], true) {
-            open.extend((0..line.len()).filter(|&other| !reached[other] && meets(line[index], line[other])));
+            open.extend((0..line.len()).filter(|&other| !reached[other] && meets([line[index], line[other]])));
         }
     }
     reached.into_iter().all(|reached| reached)
 }
 
-/// The only signal of a border, which is affine in it, if it is an input, or one whose rate an input sets.
-pub(super) fn driven(plant: &Plant, border: Expr) -> Option<Symbol> {
+/// The only signal of a wall, which is affine in it, if it is an input, or one whose rate an input sets.
+pub(super) fn driven(plant: &Plant, wall: Expr) -> Option<Symbol> {
     let arena = &plant.arena;
     let is_constant = |symbol: &Symbol| plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
-    let [signal] = arena.symbols_of(&[border]).into_iter().filter(|s| !is_constant(s)).collect::<Vec<_>>()[..] else {
+    let [signal] = arena.symbols_of(&[wall]).into_iter().filter(|s| !is_constant(s)).collect::<Vec<_>>()[..] else {
         return None;
     };
-    let is_affine = arena.symbols_of(&[arena.derivative(border, signal)]).iter().all(is_constant);
+    let is_affine = arena.symbols_of(&[arena.derivative(wall, signal)]).iter().all(is_constant);
     let rate = plant.rates().get(&signal).copied();
     let facts: Vec<Expr> = plant.assumed().facts.iter().map(|(fact, _)| fact).collect();
     let identities = plant.identities.iter().map(|identity| identity.expr);
@@ -142,13 +125,9 @@ pub(super) fn driven(plant: &Plant, border: Expr) -> Option<Symbol> {
     (is_affine && (plant.u.contains(&signal) || plant.u.iter().any(sets))).then_some(signal)
 }
 
-/// The border function of two cells, if it is one formula alone.
-fn border(first: &Cell, second: &Cell) -> Option<Expr> {
-    let is_of = |cell: &Cell, side: &(Expr, Side)| cell.sides.contains(side);
-    let mut apart = first.sides.iter().filter(|side| !is_of(second, side));
-    let (expr, _) = apart.next()?;
-    let same = first.sides.len() == second.sides.len() && second.sides.iter().any(|(other, _)| other == expr);
-    (same && apart.next().is_none()).then_some(*expr)
+/// The wall between two cells.
+fn wall(pair: [&CellRows<'_>; 2]) -> Option<Expr> {
+    wall_between(&pair[0].cell.sides, &pair[1].cell.sides)
 }
 
 /// Tests whether trajectories pass from one of the cells into the other at a point at which their combined rows have
@@ -158,32 +137,32 @@ fn passes(
     cascade: &Cascade,
     varies: &impl Fn(Expr) -> bool,
     pair: [&CellRows<'_>; 2],
-    border: Expr,
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
     let arena = &plant.arena;
+    let Some(wall) = wall(pair) else { return Ok(false) };
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
-    if arena.symbols_of(&[border]).difference(&parameters).all(|symbol| inputs.contains(symbol)) {
+    if arena.symbols_of(&[wall]).difference(&parameters).all(|symbol| inputs.contains(symbol)) {
         return Ok(jumps(arena, &inputs, pair, unknowns));
     }
     let mut rates = Vec::new();
     let mut rows = Vec::new();
     for cell in pair {
         let domain = &cell.cell.domain;
-        let rate = Flow::new(plant, domain, cascade)?.rate(arena, border);
+        let rate = Flow::new(plant, domain, cascade)?.rate(arena, wall);
         let entries: Vec<Expr> = cell.rows.iter().flatten().copied().chain([rate]).collect();
         let mut sides = as_on(arena, domain, &entries)?;
         if arena.dividers(&sides).into_iter().any(varies) {
-            // Not one formula up to the border.
+            // Not one formula up to the wall.
             return Ok(false);
         }
         rates.extend(sides.pop());
         rows.extend(sides);
     }
-    let there = on_border(plant, &pair[0].cell.domain, border);
+    let there = on_wall(plant, pair, wall);
     let product = arena.product(rates);
-    let all: Vec<Expr> = rows.iter().copied().chain([product, border]).collect();
+    let all: Vec<Expr> = rows.iter().copied().chain([product, wall]).collect();
     let found = there.points(arena, &all).take(MOST_POINTS).any(|point| {
         let same_way = arena.separated_from_zero(product, &point).is_some_and(|product| product.is_positive());
         same_way && full_rank_at(arena, &rows, unknowns, &point)
@@ -198,38 +177,37 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&CellRows<'_>; 2], unk
     // The derivatives of inputs are other symbols, and are the same: that is enough.
     pair[0].cell.domain.points(arena, &both).take(MOST_POINTS).any(|point| {
         let domain = pair[1].cell.domain.beside(&point, inputs);
-        let mut others = domain.points(arena, &both).take(FEW_POINTS);
-        others.any(|other| {
+        domain.points(arena, &both).next().is_some_and(|other| {
             let values = [arena.substitute_all(&here, &point), arena.substitute_all(&there, &other)].concat();
             full_rank_at(arena, &values, unknowns, &Point::new())
         })
     })
 }
 
-/// Formulas as they are on a cell, which have values at its border too.
+/// Formulas as they are on a cell, which have values at its walls too.
 fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let field = Field::on(arena, &domain.without_radicand_facts(arena, exprs), exprs)?;
     exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
 }
 
-/// The points of the border, with the other assumptions of a cell.
-fn on_border(plant: &Plant, cell: &Domain, border: Expr) -> Domain {
+/// The points of a wall, with the other assumptions of both cells.
+fn on_wall(plant: &Plant, pair: [&CellRows<'_>; 2], wall: Expr) -> Domain {
     let arena = &plant.arena;
     let assumed = plant.assumed();
-    let equations: Vec<Expr> = assumed.manifold.equations().iter().copied().chain([border]).collect();
+    let equations: Vec<Expr> = assumed.manifold.equations().iter().copied().chain([wall]).collect();
     let symbols: BTreeSet<Symbol> = arena.symbols_of(&equations);
     let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
     let signals = symbols.difference(&parameters).copied().collect();
     let manifold = Manifold::new(arena, &assumed.facts, equations, vec![signals, parameters]);
     let met = Domain { manifold: manifold.clone(), ..assumed.clone() };
-    let mut facts = Facts::new();
-    for (fact, relation) in cell.facts.iter() {
-        // The border is excluded as a border alone, unless the author excludes it too.
-        let is_own = assumed.facts.iter().any(|other| other == (fact, relation));
-        let is_border = decide(arena, fact, &met).is_zero();
-        if is_own || !is_border {
+    let mut facts = assumed.facts.clone();
+    let [own, other] = pair.map(|cell| cell.cell.domain.facts.iter());
+    for (fact, relation) in own.chain(other) {
+        let is_known = facts.iter().any(|known| known == (fact, relation));
+        // The wall is excluded as a wall alone, unless the author excludes it too.
+        if !is_known && !decide(arena, fact, &met).is_zero() {
             facts.assume(fact, relation);
         }
     }
-    Domain { facts, manifold, ..cell.clone() }
+    Domain { facts, manifold, ..pair[0].cell.domain.clone() }
 }

@@ -7,18 +7,16 @@
 use std::collections::BTreeMap;
 
 use crate::plant::Plant;
-use pebo_cas::domain::bounds::{Ranges, sign_on_box};
+use pebo_cas::domain::Ranges;
+use pebo_cas::domain::bounds::sign_on_box;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
-use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Rational, Symbol};
 
 use super::singular::{Volume, ZeroSet, gram};
 use crate::analysis::design::{Gram, Positive};
 use pebo_cas::forms::tidy::{shorter, shortest};
-
-/// Cells that a box is divided into before the proof is given up.
-const MOST_PARTS: usize = 4096;
 
 /// The conditions under which a regressor with full column rank at almost every point loses it, and its Gram matrix
 /// where that could be worked out.
@@ -77,33 +75,23 @@ fn worked_out(
 
 /// Tests whether an expression is positive, or of a square at least not zero, on the closed box of the assumptions.
 fn on_box(plant: &Plant, domain: &Domain, expr: Expr, square: bool) -> bool {
-    let sign = ranges(plant, domain, expr).and_then(|ranges| sign_on_box(&plant.arena, expr, ranges, MOST_PARTS));
+    let sign = ranges(plant, domain, expr).and_then(|ranges| sign_on_box(&plant.arena, expr, ranges));
     sign.is_some_and(|positive| positive || square)
 }
 
 /// The ranges that values and assumptions give the symbols, or a turn of an angle; none if one is unbounded.
 fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
     let arena = &plant.arena;
-    let mut found = Ranges::new();
-    for symbol in arena.symbols_of(&[expr]) {
+    let symbols = arena.symbols_of(&[expr]);
+    let bounds = domain.bounds(arena, &symbols);
+    let range = |symbol: Symbol| {
         let value = plant.parameters.iter().find(|p| p.symbol == symbol).and_then(|p| p.value.clone());
-        if let Some(value) = value {
-            found.insert(symbol, (value.clone(), value));
-            continue;
-        }
-        let bounds = plant.assumptions.iter().filter(|a| a.relation != Relation::NonZero);
-        let bounds: Vec<_> = bounds.filter_map(|a| bound(arena, a.expr, symbol)).collect();
-        let low = bounds.iter().filter(|(is_low, _)| *is_low).map(|(_, value)| value.clone()).max();
-        let high = bounds.iter().filter(|(is_low, _)| !is_low).map(|(_, value)| value.clone()).min();
-        let range = match (low, high) {
-            (Some(low), Some(high)) => (low, high),
-            // More than a turn.
-            _ if turns(arena, domain, expr, symbol) => (Rational::from(-4), Rational::from(4)),
-            _ => return None,
-        };
-        found.insert(symbol, range);
-    }
-    Some(found)
+        let known = value.map(|value| (value.clone(), value)).or_else(|| bounds.get(&symbol).cloned());
+        // More than a turn.
+        let turn = || turns(arena, domain, expr, symbol).then(|| (Rational::from(-4), Rational::from(4)));
+        Some((symbol, known.or_else(turn)?))
+    };
+    symbols.into_iter().map(range).collect()
 }
 
 /// Tests whether the expression is the same after a turn of the symbol.
@@ -111,14 +99,6 @@ fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
     let turn = arena.turn();
     let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
     decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
-}
-
-/// The bound that `expr >= 0` puts on a symbol alone, with true for a lower one.
-fn bound(arena: &Arena, expr: Expr, symbol: Symbol) -> Option<(bool, Rational)> {
-    let slope = arena.as_number(arena.derivative(expr, symbol))?;
-    let rest = arena.substitute(expr, &BTreeMap::from([(symbol, arena.zero())]));
-    let rest = arena.as_number(rest)?;
-    Some((!slope.is_negative(), (-&rest).checked_div(&slope)?))
 }
 
 #[cfg(test)]

@@ -13,7 +13,9 @@ mod crossing;
 mod divided;
 mod excitation;
 mod flow;
+mod joined;
 mod never;
+mod regimes;
 mod singular;
 
 use std::collections::BTreeSet;
@@ -31,6 +33,7 @@ use self::divided::{AnalyticDecision, Formulas};
 use self::flow::{Flow, effective, without_psi};
 use self::never::never;
 use self::singular::{Volume, ZeroSet};
+use self::trajectory::SHARE_OF_REMARKS;
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 
@@ -60,7 +63,7 @@ pub(super) fn prove(
         let on = |domain: &Domain, found: &mut Vec<Diagnostic>| {
             where_analytic(plant, domain, cascade, regression, left_inverse, found)
         };
-        divided::decide(plant, domain, (cascade, regression), &formulas, found, on)
+        regimes::decide(plant, domain, (cascade, regression), &formulas, found, on)
     };
     let mut claim = match reducible(&plant.arena, domain, concerns) {
         // A rank that nothing lowers needs no point.
@@ -203,8 +206,8 @@ fn where_analytic(
         Err(obstacle) => return open(plant, &obstacle, found).into(),
     };
     let excited = || {
-        // Remarks on trajectories do not use up the budget of the other claims.
-        let (trajectories, constants) = arena.budget().share(8, || trajectory::of(plant, domain, cascade, regression));
+        let (trajectories, constants) =
+            arena.budget().share(SHARE_OF_REMARKS, || trajectory::of(plant, domain, cascade, regression));
         let mut claim = answer(Excitation::Excitation, None, Verdict::Proved);
         if let Some(result) = &mut claim.result {
             result.trajectories = Some(trajectories);
@@ -316,7 +319,8 @@ fn of_theta(
 fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
     let arena = &plant.arena;
     let found = || Volume::of(arena, domain, rows)?.zero_set(plant, domain);
-    let ZeroSet { signals, zeros, constants, all, joint } = arena.budget().share(8, found).unwrap_or_default();
+    let ZeroSet { signals, zeros, constants, all, joint } =
+        arena.budget().share(SHARE_OF_REMARKS, found).unwrap_or_default();
     let hidden = plant.hidden();
     let (known, other): (Vec<_>, Vec<_>) =
         signals.into_iter().zip(zeros).partition(|(_, zero)| !arena.depends_on(*zero, &hidden));

@@ -15,7 +15,7 @@ use pebo_cas::linear::Echelon;
 use pebo_cas::linear::determinant::determinant;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
-use pebo_cas::{Arena, Domain, Expr, Facts, Node, Rational, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
 /// The zeros of a determinant.
 #[derive(Default)]
@@ -107,9 +107,7 @@ impl<'a> Volume<'a> {
         let field = &self.field;
         let open = |factor: &Poly| -> Result<bool, Obstacle> {
             let formula = field.show(&field.of_polynomial(factor)?);
-            let is_known =
-                || domain.implies(self.arena, formula, Relation::NonZero) || self.contradicts(formula, domain);
-            Ok(!field.signs().never_zero(factor) && !is_known())
+            Ok(!field.signs().never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
         };
         let mut shared = false;
         for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
@@ -152,27 +150,7 @@ impl<'a> Volume<'a> {
     /// Tests whether the assumptions exclude all zeros of a polynomial.
     fn never_zero(&self, poly: &Poly, domain: &Domain) -> Result<bool, Obstacle> {
         let formula = self.field.show(&self.field.of_polynomial(poly)?);
-        Ok(self.field.signs().never_zero(poly)
-            || domain.implies(self.arena, formula, Relation::NonZero)
-            || self.contradicts(formula, domain))
-    }
-
-    /// Tests whether the zeros of a formula contradict an assumption: an expression assumed nonzero divides the square
-    /// of the formula, as `cos(q) - 1` divides `sin(q)^2`.
-    fn contradicts(&self, formula: Expr, domain: &Domain) -> bool {
-        let arena = self.arena;
-        let symbols = arena.symbols_of(&[formula]);
-        let divides = |fact: Expr| -> Result<bool, Obstacle> {
-            let square = arena.mul(fact, fact);
-            let field = Field::over(arena, &Facts::default(), &[formula, square])?;
-            let (formula, square) = (field.fraction(formula)?, field.fraction(square)?);
-            let whole = square.denominator().is_constant();
-            Ok(whole && square.numerator().div_exact(formula.numerator(), field.limit())?.is_some())
-        };
-        let mut facts = domain.facts.iter().filter(|(fact, relation)| {
-            *relation != Relation::NonNegative && symbols.is_superset(&arena.symbols_of(&[*fact]))
-        });
-        facts.any(|(fact, _)| divides(fact).unwrap_or(false))
+        Ok(self.field.signs().never_zero(poly) || domain.implies(self.arena, formula, Relation::NonZero))
     }
 
     /// Adds the zeros of a factor.

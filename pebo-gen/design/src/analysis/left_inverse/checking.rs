@@ -64,15 +64,10 @@ pub(super) fn unlike_after(plant: &Plant, domain: &Domain, state: Symbol, period
     })
 }
 
-/// Decides whether an angle is a whole number of turns: its sine is 0 and its cosine 1.
+/// Decides whether an angle is a whole number of turns: its cosine is 1.
 fn turns(arena: &Arena, domain: &Domain, angle: Expr) -> (Expr, Answer) {
-    let sin = arena.call(Function::Sin, &[angle]);
-    let answer = decide(arena, sin, domain);
-    if !answer.is_zero() {
-        return (sin, answer);
-    }
-    let cos = arena.sub(arena.call(Function::Cos, &[angle]), arena.one());
-    (cos, decide(arena, cos, domain))
+    let difference = arena.sub(arena.call(Function::Cos, &[angle]), arena.one());
+    (difference, decide(arena, difference, domain))
 }
 
 /// Tests whether an angle is provably a whole number of turns.

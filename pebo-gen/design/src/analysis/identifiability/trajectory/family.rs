@@ -13,10 +13,7 @@ use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
-use super::problem::{Observation, Restriction, TrajectoryProblem};
-
-/// The share of the remaining budget for the trajectories on which one expression is zero.
-const SHARE: u64 = 8;
+use super::problem::{Observation, Restriction, SHARE_OF_REMARKS, TrajectoryProblem};
 
 /// Trajectories on which the rows are analytic.
 pub(super) struct Family {
@@ -93,7 +90,7 @@ impl TrajectoryProblem<'_> {
         held: &BTreeSet<Symbol>,
         listed: &[BlindTrajectory],
     ) -> Result<(Vec<BlindTrajectory>, bool), Obstacle> {
-        let families = self.plant.arena.budget().share(SHARE, || self.invariant(zero, held))?;
+        let families = self.plant.arena.budget().share(SHARE_OF_REMARKS, || self.invariant(zero, held))?;
         // Zeros within one that identifies all unknowns were not worked out.
         let all = families.iter().all(|family| !family.observed.hidden.is_empty());
         let is_listed = |family: &Family| {

@@ -6,26 +6,19 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, TrajectoryCondition};
 use crate::analysis::identifiability::flow::{Flow, without_psi};
-use crate::analysis::identifiability::singular::Volume;
+use crate::analysis::identifiability::singular::{Volume, ZeroSet};
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
-use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
-
-/// Size of the rows up to which their determinant is worked out.
-pub(super) const MOST_OF_DETERMINANT: usize = 150;
+use super::problem::{Restriction, TrajectoryProblem};
 
 impl TrajectoryProblem<'_> {
     /// Values of parameters at which rows that have full rank with constant inputs lose it, but for those that are
     /// conditions.
     pub(super) fn coincidences(&self, stack: &[Vec<Expr>], conditions: &[Expr]) -> Vec<(Symbol, Expr)> {
         let arena = &self.plant.arena;
-        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
-            return Vec::new();
-        }
-        let volume = Volume::of(arena, self.domain, stack);
-        let zero_set = volume.and_then(|volume| volume.zero_set(self.plant, self.domain)).unwrap_or_default();
+        let zero_set = self.check_size(stack).and_then(|()| self.zero_set(self.domain, stack)).unwrap_or_default();
         let open = zero_set.constants.into_iter().filter(|formula| !conditions.contains(formula));
         let value = |formula: Expr| {
             let mut parameters = arena.symbols_of(&[formula]).into_iter();
@@ -38,36 +31,21 @@ impl TrajectoryProblem<'_> {
     /// of others, the unknowns are decided there; the rest is undecided. And true if there are no other such
     /// trajectories: a trajectory that leaves the zero at once is none, and a zero of several signals is listed only if
     /// it is invariant.
-    pub(super) fn doubtful(
-        &self,
-        listed: &[BlindTrajectory],
-        symbols: &[Symbol],
-        stack: &[Vec<Expr>],
-    ) -> (Vec<BlindTrajectory>, bool) {
+    pub(super) fn doubtful(&self, listed: &[BlindTrajectory], stack: &[Vec<Expr>]) -> (Vec<BlindTrajectory>, bool) {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
         if self.is_constant(stack) {
             return (Vec::new(), true);
         }
-        let volume = Volume::of(arena, domain, stack);
-        let Ok(zero_set) = volume.and_then(|volume| volume.zero_set(plant, domain)) else { return (Vec::new(), false) };
+        let Ok(zero_set) = self.zero_set(domain, stack) else { return (Vec::new(), false) };
         let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
         let held: BTreeSet<Symbol> = plant.commanded().collect();
         let known: BTreeSet<Symbol> = constants.union(&held).copied().collect();
         let flow = Flow::along(plant, domain, self.cascade, &held, &BTreeMap::new());
-        let blind = |condition: TrajectoryCondition, observed: Observation| BlindTrajectory {
-            condition,
-            identifiable: identifiable(arena, symbols, &observed.hidden),
-            hidden: observed.hidden,
-        };
         let mut found = Vec::new();
         let mut all = zero_set.all;
         for zero in zero_set.zeros {
-            let undecided = || BlindTrajectory {
-                condition: TrajectoryCondition::Undecided(zero),
-                identifiable: Vec::new(),
-                hidden: Vec::new(),
-            };
+            let undecided = || BlindTrajectory::undecided(TrajectoryCondition::Undecided(zero));
             if !arena.symbols_of(&[zero]).is_subset(&known) {
                 let is_one = || arena.symbols_of(&[zero]).difference(&constants).count() == 1;
                 let is_kept = || flow.as_ref().is_ok_and(|flow| self.is_invariant(zero, flow.rate(arena, zero)));
@@ -97,11 +75,11 @@ impl TrajectoryProblem<'_> {
                 // Inputs that identify unknowns by their variation may not do so as constants.
                 Ok(observed) if observed.hidden.is_empty() => match self.steady(input, value) {
                     Ok(observed) if observed.hidden.is_empty() => {}
-                    Ok(observed) => found.push(blind(TrajectoryCondition::Steady(input, value), observed)),
+                    Ok(observed) => found.push(self.blind(TrajectoryCondition::Steady(input, value), &observed)),
                     Err(Obstacle::NoPoint) => {}
                     Err(_) => found.push(undecided()),
                 },
-                Ok(observed) => found.push(blind(TrajectoryCondition::Value(input, value), observed)),
+                Ok(observed) => found.push(self.blind(TrajectoryCondition::Value(input, value), &observed)),
                 // The domain holds no such trajectory.
                 Err(Obstacle::NoPoint) => {}
                 Err(_) => found.push(undecided()),
@@ -149,15 +127,13 @@ impl TrajectoryProblem<'_> {
     pub(super) fn kept(&self, stack: &[Vec<Expr>]) -> Vec<Expr> {
         let &Self { plant, domain, .. } = self;
         let arena = &plant.arena;
-        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
-            return Vec::new();
-        }
         // A signal without a rate is as free as an input.
         let constants = plant.parameters.iter().map(|p| p.symbol);
         let determined: BTreeSet<Symbol> =
             constants.chain(plant.rates().into_keys()).chain(plant.chi.clone()).collect();
         let found = || -> Result<Vec<Expr>, Obstacle> {
-            let zeros = Volume::of(arena, domain, stack)?.zero_set(plant, domain)?.zeros;
+            self.check_size(stack)?;
+            let zeros = self.zero_set(domain, stack)?.zeros;
             let flow = Flow::along(plant, domain, self.cascade, &BTreeSet::new(), &BTreeMap::new())?;
             let is_kept = |zero: &Expr| {
                 arena.symbols_of(&[*zero]).is_subset(&determined) && self.is_invariant(*zero, flow.rate(arena, *zero))
@@ -184,18 +160,18 @@ impl TrajectoryProblem<'_> {
         divides().unwrap_or(false)
     }
 
+    /// The zeros of the determinant of rows of full rank.
+    fn zero_set(&self, domain: &Domain, stack: &[Vec<Expr>]) -> Result<ZeroSet, Obstacle> {
+        Volume::of(&self.plant.arena, domain, stack)?.zero_set(self.plant, domain)
+    }
+
     /// Zeros at which rows that have full rank on a family of equilibria lose it; and true if there are no others.
     pub(super) fn doubtful_at_rest(&self, domain: &Domain, stack: &[Vec<Expr>]) -> (Vec<Expr>, bool) {
-        let plant = self.plant;
-        let arena = &plant.arena;
         if self.is_constant(stack) {
             return (Vec::new(), true);
         }
-        if arena.postorder(&stack.concat()).len() > MOST_OF_DETERMINANT {
-            return (Vec::new(), false);
-        }
-        let volume = Volume::of(arena, domain, stack);
-        let Ok(zero_set) = volume.and_then(|volume| volume.zero_set(plant, domain)) else { return (Vec::new(), false) };
+        let zero_set = self.check_size(stack).and_then(|()| self.zero_set(domain, stack));
+        let Ok(zero_set) = zero_set else { return (Vec::new(), false) };
         (zero_set.zeros, zero_set.all)
     }
 
@@ -239,7 +215,7 @@ impl TrajectoryProblem<'_> {
         if arena.symbols_of(&stack.concat()).is_disjoint(&own) {
             return Ok((Vec::new(), true));
         }
-        let zero_set = Volume::of(arena, self.domain, stack)?.zero_set(self.plant, self.domain)?;
+        let zero_set = self.zero_set(self.domain, stack)?;
         let mut all = zero_set.all && !zero_set.joint;
         let mut lost = Vec::new();
         for formula in zero_set.constants {
@@ -279,10 +255,8 @@ impl TrajectoryProblem<'_> {
         if !observed.hidden.is_empty() {
             return Ok(None);
         }
-        let zero_set = || {
-            Volume::of(&plant.arena, &domain, &observed.stack).and_then(|volume| volume.zero_set(plant, &domain)).ok()
-        };
-        Ok(Some(zero_set().is_none_or(|zero_set| !zero_set.all || zero_set.joint || !zero_set.constants.is_empty())))
+        let zero_set = self.zero_set(&domain, &observed.stack).ok();
+        Ok(Some(zero_set.is_none_or(|zero_set| !zero_set.all || zero_set.joint || !zero_set.constants.is_empty())))
     }
 }
 

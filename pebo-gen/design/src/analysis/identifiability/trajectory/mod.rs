@@ -26,19 +26,10 @@ use crate::plant::Plant;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
-use losses::{MOST_OF_DETERMINANT, is_listed};
-use problem::{MOST_PARTS, Observation, Restriction};
+use losses::is_listed;
+use problem::{Observation, Restriction};
 
-pub(super) use problem::{TrajectoryProblem, identifiable};
-
-/// Inputs up to which trajectories are tried one by one.
-const MOST_INPUTS: usize = 6;
-
-/// For longer rows, the share of the budget for the conditions on parameters.
-const FOR_PARAMETERS: u64 = 8;
-
-/// Values of inputs that are tried.
-const MOST_VALUES: usize = 8;
+pub(super) use problem::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// The necessary motion, and combinations of the parameters whose zeros lower the rank.
 pub(super) fn of(
@@ -52,17 +43,10 @@ pub(super) fn of(
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let held = problem.solve(&Restriction { held: inputs.clone(), ..Restriction::default() });
     let by_itself = held.as_ref().ok().map(|observed| observed.hidden.is_empty()).or(inputs.is_empty().then_some(true));
-    let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     let mut blind = Vec::new();
     let mut note = |condition: TrajectoryCondition, observed: &Result<Observation, Obstacle>| {
-        let hidden = observed.as_ref().map_or(&[][..], |observed| observed.hidden.as_slice());
-        if !hidden.is_empty() {
-            blind.push(BlindTrajectory {
-                condition,
-                identifiable: identifiable(arena, symbols, hidden),
-                hidden: hidden.to_vec(),
-            });
-        }
+        let hidden = observed.as_ref().ok().filter(|observed| !observed.hidden.is_empty());
+        blind.extend(hidden.map(|observed| problem.blind(condition, observed)));
     };
     if by_itself != Some(true) {
         note(TrajectoryCondition::Constant(plant.commanded().collect()), &held);
@@ -79,9 +63,9 @@ pub(super) fn of(
             free.as_ref().ok()
         };
     let special = observed.and_then(|observed| {
-        let few = arena.postorder(&observed.stack.concat()).len() <= MOST_OF_DETERMINANT;
+        let is_short = problem.check_size(&observed.stack).is_ok();
         let worked_out = || problem.constants(&observed.stack).ok();
-        if few { worked_out() } else { arena.budget().share(FOR_PARAMETERS, worked_out) }
+        if is_short { worked_out() } else { arena.budget().share(SHARE_OF_REMARKS, worked_out) }
     });
     let coincide = || observed.is_some_and(|observed| problem.may_coincide(&observed.stack));
     let (constants, all) = special.unwrap_or_default();
@@ -93,10 +77,9 @@ pub(super) fn of(
         found.map_or_else(|_| vec![undecided(zero)], |(decided, _)| decided)
     };
     let kept: Vec<BlindTrajectory> = kept.into_iter().flatten().flat_map(decided).collect();
-    let parts = held.as_ref().map_or(usize::MAX, |observed| arena.postorder(&observed.stack.concat()).len());
     let mut everywhere = false;
-    if parts <= MOST_PARTS && inputs.len() <= MOST_INPUTS {
-        let stack = held.as_ref().map_or(&[][..], |observed| observed.stack.as_slice());
+    let short = held.as_ref().ok().filter(|observed| problem.check_size(&observed.stack).is_ok());
+    if let Some(Observation { stack, .. }) = short {
         let mut tried: Vec<(Symbol, Expr)> = Vec::new();
         for (condition, restriction) in problem.candidates(by_itself == Some(true), stack) {
             if let TrajectoryCondition::Value(input, value) = &condition {
@@ -120,7 +103,7 @@ pub(super) fn of(
             for (parameter, value) in problem.coincidences(stack, &constants) {
                 note(TrajectoryCondition::Steady(parameter, value), &problem.steady(parameter, value));
             }
-            let (doubtful, all) = problem.doubtful(&blind, symbols, stack);
+            let (doubtful, all) = problem.doubtful(&blind, stack);
             blind.extend(doubtful);
             everywhere = all;
         }
@@ -154,7 +137,7 @@ impl TrajectoryProblem<'_> {
                 }
             }
         }
-        for (input, value) in self.values(stack).unwrap_or_default().into_iter().take(MOST_VALUES) {
+        for (input, value) in self.values(stack).unwrap_or_default() {
             let equal = BTreeMap::from([(input, value)]);
             found.push((TrajectoryCondition::Value(input, value), Restriction { equal, ..Restriction::default() }));
         }

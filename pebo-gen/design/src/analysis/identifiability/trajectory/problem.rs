@@ -9,8 +9,11 @@ use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-/// Size of the rows with their derivatives up to which directions are solved for.
-pub(super) const MOST_PARTS: usize = 600;
+/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
+pub(in crate::analysis::identifiability) const SHARE_OF_REMARKS: u64 = 8;
+
+/// Size of the rows with their derivatives up to which exact algebra is done on them: directions, determinants.
+const MOST_PARTS: usize = 600;
 
 /// An observability problem on trajectories of a plant.
 pub(in crate::analysis::identifiability) struct TrajectoryProblem<'a> {
@@ -70,9 +73,7 @@ impl TrajectoryProblem<'_> {
             stack.extend(without_psi(plant, &latest));
             let next = proved_rank(arena, domain, &stack, unknowns);
             if next == rank {
-                if arena.postorder(&stack.concat()).len() > MOST_PARTS {
-                    return Err(Obstacle::TooLarge);
-                }
+                self.check_size(&stack)?;
                 // No derivative adds to a rank that one derivative did not raise: by exact algebra, both times.
                 let vectors = null_vectors(arena, domain, &stack, unknowns)?;
                 if vectors.len() == null_vectors(arena, domain, &before, unknowns)?.len() {
@@ -87,13 +88,20 @@ impl TrajectoryProblem<'_> {
             Some(hidden) => hidden,
             None if rank == unknowns => Vec::new(),
             // As many derivatives as there are unknowns have the full rank.
-            None if arena.postorder(&stack.concat()).len() > MOST_PARTS => return Err(Obstacle::TooLarge),
-            None => null_vectors(arena, domain, &stack, unknowns)?,
+            None => {
+                self.check_size(&stack)?;
+                null_vectors(arena, domain, &stack, unknowns)?
+            }
         };
         if hidden.is_empty() && rank < unknowns {
             return Err(Obstacle::NoWitness);
         }
         Ok(Observation { stack, hidden })
+    }
+
+    /// An obstacle if the rows are too long for exact algebra.
+    pub(super) fn check_size(&self, stack: &[Vec<Expr>]) -> Result<(), Obstacle> {
+        if self.plant.arena.postorder(&stack.concat()).len() > MOST_PARTS { Err(Obstacle::TooLarge) } else { Ok(()) }
     }
 
     /// Solves the problem with all inputs constant, and an input or parameter at a value.

@@ -14,10 +14,7 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use super::family::Family;
-use super::problem::{Observation, Restriction, TrajectoryProblem, identifiable};
-
-/// The share of the remaining budget for equilibria, as for other trajectories.
-const SHARE: u64 = 8;
+use super::problem::{Observation, Restriction, SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// Adds to the trajectories of a regression those at equilibria.
 pub(in crate::analysis::identifiability) fn add(
@@ -44,8 +41,7 @@ pub(in crate::analysis::identifiability) fn add(
     };
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let held = problem.signals_at_rest();
-    // Remarks on equilibria do not use up the budget of the other claims.
-    let rest = plant.arena.budget().share(SHARE, || match problem.families(&held) {
+    let rest = plant.arena.budget().share(SHARE_OF_REMARKS, || match problem.families(&held) {
         Ok(families) => problem.joined(&families, &trajectories.blind, &held),
         Err(_) => problem.at_constant_signals(&held),
     });

@@ -1,4 +1,4 @@
-//! Squares of sums of sines and cosines, which `sin^2 = 1 - cos^2` hides.
+//! Half an angle: squares of sums of sines and cosines, which `sin^2 = 1 - cos^2` hides, and the kernels of a half.
 //!
 //! In: a polynomial over sines and cosines. Out: one whose square it is, up to an integer. With
 //! `t = tan(a/2)`, sines and cosines are rational functions of t without relations among them
@@ -7,6 +7,10 @@
 use crate::Integer;
 use crate::poly::{Monomial, Poly};
 
+use crate::number::rational::half;
+use crate::tower::fraction::Fraction;
+use crate::tower::kernel::range::Range;
+use crate::tower::kernel::trigonometric::Pair;
 use crate::tower::{Field, Obstacle};
 
 /// The greatest number of angles in a square.
@@ -83,5 +87,21 @@ impl Field<'_> {
             total = &total + &term;
         }
         Ok(total)
+    }
+
+    /// Sine and cosine of half an angle, for an angle within a half circle.
+    ///
+    /// `cos(a/2) = sqrt((1 + cos a)/2)` is not negative for |a| <= pi and not zero for |a| < pi, where
+    /// `sin(a/2) = sin(a) / (2 cos(a/2))`; for 0 <= a <= pi, `sin(a/2) = sqrt((1 - cos a)/2)`.
+    pub(in crate::tower) fn half_of(&self, (sin, cos): &Pair, range: &Range) -> Result<Option<Pair>, Obstacle> {
+        let root = |square: &Fraction| self.root(&self.scale(square, &half())?, &half());
+        let half_cos = root(&self.add(&Fraction::one(), cos)?)?;
+        if range.is_upper_half() {
+            return Ok(Some((root(&self.sub(&Fraction::one(), cos)?)?, half_cos)));
+        }
+        if !range.is_within_half_turn() || half_cos.is_zero() {
+            return Ok(None);
+        }
+        Ok(Some((self.div(&self.scale(sin, &half())?, &half_cos)?, half_cos)))
     }
 }

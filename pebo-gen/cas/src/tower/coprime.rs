@@ -6,9 +6,7 @@
 //! `sqrt(a*b)` and `sqrt(a)` is found.
 //!
 //! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of sums of sines
-//! and cosines are searched for ([`square`]).
-
-mod square;
+//! and cosines are searched for ([`Field::hidden_root`]).
 
 use crate::Integer;
 use crate::graph::expr::Expr;
@@ -91,18 +89,9 @@ pub(in crate::tower) struct ElementProduct {
 impl Field<'_> {
     /// A primitive polynomial as a product of powers of parts.
     pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<ElementProduct, Obstacle> {
-        let mut powers: Vec<(Poly, u32)> = Vec::new();
-        let mut rest = poly.clone();
-        for (sine, square) in self.sines_of(poly)? {
-            let mut times = 0;
-            while let Some(quotient) = rest.div_exact(&square, self.limit())? {
-                rest = quotient;
-                times += 2;
-            }
-            if times > 0 {
-                powers.push((Poly::variable(sine), times));
-            }
-        }
+        let (rest, sines) = self.without_sines(poly)?;
+        let mut powers: Vec<(Poly, u32)> =
+            sines.into_iter().map(|power| (Poly::variable(power.sine), power.times)).collect();
         let mut found = rest.square_free(self.limit())?;
         let mut divisor = Integer::ONE;
         if let [(factor, 1)] = found.factors.as_slice() {
@@ -154,38 +143,6 @@ impl Field<'_> {
     /// Keeps the base for the next round.
     pub(in crate::tower) fn keep_base(&self) {
         self.base.borrow_mut().keep(|poly| self.show_polynomial(poly));
-    }
-
-    /// The sine kernels of the angles whose cosines occur, each with its square.
-    fn sines_of(&self, poly: &Poly) -> Result<Vec<(u32, Poly)>, Obstacle> {
-        let mut sines = Vec::new();
-        for &variable in poly.variables() {
-            if let Some(sine) = self.sine_beside(variable) {
-                sines.push((sine, &Poly::one() - &Poly::variable(variable).pow(2, self.limit())?));
-            }
-        }
-        Ok(sines)
-    }
-
-    /// The polynomial with squared cosines replaced by squared sines, if there are any.
-    pub(in crate::tower) fn with_sines(&self, poly: &Poly) -> Result<Option<Poly>, Obstacle> {
-        let mut other = poly.clone();
-        for &variable in poly.variables() {
-            if let Some(sine) = self.sine_beside(variable) {
-                let square = &Poly::one() - &Poly::variable(sine).pow(2, self.limit())?;
-                other = other.reduce_power(variable, 2, &square, self.limit())?;
-            }
-        }
-        Ok((other != *poly).then_some(other))
-    }
-
-    /// The sine kernel of the same angle, for a cosine kernel.
-    pub(in crate::tower) fn sine_beside(&self, variable: u32) -> Option<u32> {
-        use crate::graph::expr::Node;
-        use crate::graph::function::Function;
-        let Node::Call(Function::Cos, arguments) = self.arena.node(self.kernel(variable)) else { return None };
-        let sine = self.arena.call(Function::Sin, &arguments);
-        self.round.kernels.borrow().number_of(sine)
     }
 }
 

@@ -9,15 +9,15 @@ use crate::Rational;
 use crate::graph::expr::Expr;
 use crate::poly::{Monomial, Poly};
 
-use super::Field;
-use super::fraction::Fraction;
-use super::obstacle::Obstacle;
+use super::SinePower;
+use crate::tower::fraction::Fraction;
+use crate::tower::{Field, Obstacle};
 
 impl Field<'_> {
     /// The forms of the fraction without common sines, the last with each term over the sines that it does not hold;
     /// empty if there are none.
     pub fn show_without_sines(&self, fraction: &Fraction) -> Vec<Expr> {
-        let Ok(Some((rest, sines))) = self.without_sines(fraction) else { return Vec::new() };
+        let Ok(Some((rest, sines))) = self.without_common_sines(fraction) else { return Vec::new() };
         let divisors =
             sines.powers().iter().map(|&(sine, times)| (self.kernel(sine), Rational::from(-i64::from(times))));
         let divisors: Vec<(Expr, Rational)> = divisors.collect();
@@ -31,14 +31,14 @@ impl Field<'_> {
     /// The fraction over powers of sines in place of those of `1 - cos(q)^2`, if the denominator has such, with the
     /// numerator's multiples of them written so: then terms cancel on their own. It is not in normal form. Other terms
     /// are unchanged, as `cos(q)^2` is: `1 - sin(q)^2` in its place has lost its digits where it is small.
-    pub(super) fn over_sines(&self, fraction: &Fraction) -> Result<Fraction, Obstacle> {
-        let Fraction { mut num, mut den } = fraction.clone();
-        for variable in den.variables().to_vec() {
-            let Some(sine) = self.sine_beside(variable) else { continue };
-            let Some((rest, square, times)) = self.without_squares(&den, variable)? else { continue };
+    pub(in crate::tower) fn over_sines(&self, fraction: &Fraction) -> Result<Fraction, Obstacle> {
+        let mut num = fraction.num.clone();
+        let (mut den, powers) = self.without_sines(&fraction.den)?;
+        for SinePower { sine, cosine, times } in powers {
+            let square = self.square_beside(cosine)?;
             let power = |times: u32| Poly::variable(sine).pow(times, self.limit());
-            den = rest.mul(&power(times)?, self.limit())?;
-            let others: Vec<u32> = num.variables().iter().copied().filter(|v| ![variable, sine].contains(v)).collect();
+            den = den.mul(&power(times)?, self.limit())?;
+            let others: Vec<u32> = num.variables().iter().copied().filter(|v| ![cosine, sine].contains(v)).collect();
             let mut total = Poly::zero();
             for (monomial, mut rest) in num.collect(&others) {
                 let mut taken = 0;
@@ -57,18 +57,6 @@ impl Field<'_> {
         Ok(Fraction { num, den })
     }
 
-    /// The polynomial without its powers of `1 - cos(q)^2`, that square, and the power of the sine that they are; none
-    /// if it has none.
-    fn without_squares(&self, poly: &Poly, cosine: u32) -> Result<Option<(Poly, Poly, u32)>, Obstacle> {
-        let square = &Poly::one() - &Poly::variable(cosine).pow(2, self.limit())?;
-        let (mut rest, mut times) = (poly.clone(), 0);
-        while let Some(quotient) = rest.div_exact(&square, self.limit())? {
-            rest = quotient;
-            times += 2;
-        }
-        Ok((times > 0).then_some((rest, square, times)))
-    }
-
     /// The polynomial over a sine with the given square, if that divides it.
     fn over_sine(&self, poly: &Poly, sine: u32, square: &Poly) -> Result<Option<Poly>, Obstacle> {
         let turned = self.reduce(&poly.mul(&Poly::variable(sine), self.limit())?)?;
@@ -76,26 +64,25 @@ impl Field<'_> {
     }
 
     /// The reduced fraction, and the powers of sines that remain in the denominator, if any cancelled.
-    fn without_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Monomial)>, Obstacle> {
-        let Fraction { mut num, mut den } = fraction.clone();
-        let mut left = Vec::new();
+    fn without_common_sines(&self, fraction: &Fraction) -> Result<Option<(Fraction, Monomial)>, Obstacle> {
+        let mut num = fraction.num.clone();
+        let (mut den, mut powers) = self.without_sines(&fraction.den)?;
         let mut cancelled = false;
-        for variable in den.variables().to_vec() {
-            let Some(sine) = self.sine_beside(variable) else { continue };
-            let Some((rest, square, mut times)) = self.without_squares(&den, variable)? else { continue };
-            den = rest;
-            while times > 0 {
-                let Some(rest) = self.over_sine(&num, sine, &square)? else { break };
+        for SinePower { sine, cosine, times } in &mut powers {
+            let square = self.square_beside(*cosine)?;
+            while *times > 0
+                && let Some(rest) = self.over_sine(&num, *sine, &square)?
+            {
                 num = rest;
-                times -= 1;
+                *times -= 1;
                 cancelled = true;
             }
-            left.push((sine, times));
         }
         if den.leading_coefficient().is_negative() {
             (num, den) = (-&num, -&den);
         }
-        Ok(cancelled.then(|| (Fraction { num, den }, Monomial::new(left))))
+        let left = Monomial::new(powers.into_iter().map(|power| (power.sine, power.times)));
+        Ok(cancelled.then_some((Fraction { num, den }, left)))
     }
 }
 

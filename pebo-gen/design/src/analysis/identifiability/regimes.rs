@@ -1,0 +1,89 @@
+//! Identifiability for parameters of other signs than those of the file.
+//!
+//! In: the decision on a domain. Out: the decision for all values of the parameters that the assumptions leave: where
+//! those of some signs have another answer, the signs of the file are conditions.
+
+use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, Regression, Verdict};
+use crate::analysis::left_inverse::checking::at_phi;
+use crate::plant::Plant;
+use crate::source::{Code, Diagnostic};
+use pebo_cas::Domain;
+use pebo_cas::domain::cells::{Cell, walls};
+use pebo_cas::tower::Obstacle;
+
+use super::divided::{AnalyticDecision, Formulas, kind, on_cells, varies};
+use super::joined::Joined;
+
+/// Answers on the whole domain; an obstacle where that is open.
+pub(super) fn decide(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, regression): (&Cascade, &Regression),
+    formulas: &Formulas,
+    found: &mut Vec<Diagnostic>,
+    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
+) -> Result<Claim<Identifiability>, Obstacle> {
+    let on_cells = |domain: &Domain, found: &mut Vec<Diagnostic>| {
+        on_cells(plant, domain, (cascade, regression), formulas, found, &on)
+    };
+    let regimes = regimes(plant, domain, formulas)?;
+    if let [_] = regimes.as_slice() {
+        return on_cells(domain, found);
+    }
+    let mut claims = Vec::new();
+    for regime in &regimes {
+        let mut reported = Vec::new();
+        claims.push((regime, on_cells(&regime.domain, &mut reported)?, reported));
+    }
+    let first = kind(&claims[0].1);
+    let is_whole = matches!(first, Some(Excitation::Instant | Excitation::Never));
+    if is_whole && claims.iter().all(|(_, claim, _)| kind(claim) == first) {
+        let whole = on_cells(domain, found)?;
+        if kind(&whole) == first {
+            return Ok(whole);
+        }
+    }
+    let is_identified = |claim: &Claim<Identifiability>| kind(claim).is_some_and(|kind| kind != Excitation::Never);
+    if let Some((other, ..)) = claims.iter().find(|(_, claim, _)| !is_identified(claim)) {
+        let is_given = |regime: &Cell| !domain.fixed.is_empty() && regime.domain.fixed == domain.fixed;
+        let own = claims.iter().find(|(regime, claim, _)| is_given(regime) && is_identified(claim));
+        let Some((regime, claim, reported)) = own else {
+            found.push(depends_on_signs(plant, other));
+            return Ok(Claim { verdict: Verdict::Undecided, result: None });
+        };
+        let mut claim = claim.clone();
+        if let Some(result) = &mut claim.result {
+            let sides = regime.distinct_sides(&plant.arena, domain).into_iter();
+            result.positive = sides.map(|(divider, side)| side.positive(&plant.arena, divider)).collect();
+        }
+        found.extend(reported.iter().cloned());
+        return Ok(claim);
+    }
+    let mut joined = Joined::new();
+    for (regime, claim, _) in &claims {
+        if let Some(result) = &claim.result {
+            joined.add(result, || regime.distinct_sides(&plant.arena, domain));
+        }
+    }
+    Ok(joined.claim(plant, claims.len()))
+}
+
+/// The cells of the parameters: the signs of those of their functions that occur in the rows on a cell of the domain.
+fn regimes(plant: &Plant, domain: &Domain, formulas: &Formulas) -> Result<Vec<Cell>, Obstacle> {
+    let mut dividers = walls(&domain.cells(&plant.arena, &formulas.all(), |_| true)?);
+    dividers.retain(|divider| !varies(plant, *divider));
+    domain.divided_by(&plant.arena, &dividers)
+}
+
+/// With parameters of other signs there is another answer.
+fn depends_on_signs(plant: &Plant, cell: &Cell) -> Diagnostic {
+    let sides: Vec<String> =
+        cell.sides.iter().map(|(expr, side)| format!("`{} {}`", plant.arena.print(*expr), side.sign())).collect();
+    Diagnostic::error(
+        Code::IdentifiabilityUndecided,
+        at_phi(plant),
+        "whether the unknowns can be identified depends on the signs of parameters",
+    )
+    .label(format!("it was not shown for parameters with {}", sides.join(", ")))
+    .help("state the signs of the parameters under `assume`")
+}
