@@ -52,7 +52,15 @@ impl Domain {
             || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
             || (signed
                 && (self.implies_on_both_sides(arena, expr, relation)
-                    || self.implies_of_combined_angles(arena, expr, relation)))
+                    || self.implies_of_combined_angles(arena, expr, relation)
+                    || self.implies_by_values(arena, expr, relation)))
+    }
+
+    /// True if the expression compares so with the values that the equations give of symbols in it: `1 - y^2` is not
+    /// negative where `y = sin(q)`, though the normal form keeps y, which results may hold, and not q.
+    fn implies_by_values(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        let by_values = arena.substitute(expr, &self.manifold.given_values(arena));
+        by_values != expr && self.without_equations().implies(arena, by_values, relation)
     }
 
     /// True if the expression compares so in angles of its own for the sums of which it takes sines and cosines:
@@ -202,6 +210,7 @@ fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Ob
 mod tests {
     use super::*;
     use crate::Function;
+    use crate::domain::manifold::Manifold;
 
     #[test]
     fn divisors_of_a_fact_do_not_vanish() {
@@ -280,6 +289,21 @@ mod tests {
             let implied = Domain::default().implies(&arena, expr, relation);
             assert_eq!(implied, expected, "{} {}", arena.print(expr), relation.sign());
         }
+    }
+
+    #[test]
+    fn measured_values_have_the_bounds_of_their_formulas() {
+        let arena = Arena::new();
+        let [q, y] = ["q", "y"].map(|name| arena.variable(name));
+        let equation = arena.sub(y, arena.scale(arena.call(Function::Sin, &[q]), &Rational::from(2)));
+        let groups = vec![arena.symbols_of(&[q]), arena.symbols_of(&[y]), BTreeSet::new()];
+        let manifold = Manifold::new(&arena, &Facts::new(), vec![equation], groups);
+        let domain = Domain { manifold, ..Domain::default() };
+        let leg = |square: i64| arena.sub(arena.number(square), arena.mul(y, y));
+        assert!(domain.implies(&arena, leg(4), Relation::NonNegative));
+        assert!(domain.implies(&arena, leg(5), Relation::Positive));
+        assert!(!domain.implies(&arena, leg(4), Relation::Positive));
+        assert!(!domain.implies(&arena, leg(3), Relation::NonNegative));
     }
 
     #[test]

@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::certified::System;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
-use crate::graph::expr::{Expr, Symbol};
+use crate::graph::expr::{Expr, Node, Symbol};
 use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Facts, Rational};
@@ -121,6 +121,24 @@ impl Manifold {
     pub(super) fn hidden(&self) -> &BTreeSet<Symbol> {
         static NONE: BTreeSet<Symbol> = BTreeSet::new();
         self.groups.first().unwrap_or(&NONE)
+    }
+
+    /// The values of symbols that may occur in results, where an equation is a number times one of them and a formula
+    /// without it.
+    pub(super) fn given_values(&self, arena: &Arena) -> BTreeMap<Symbol, Expr> {
+        let mut values = BTreeMap::new();
+        for equation in &self.equations {
+            let Node::Sum(sum) = arena.node(*equation) else { continue };
+            let value = sum.terms.iter().find_map(|(term, slope)| {
+                let symbol = arena.as_symbol(*term).filter(|symbol| !self.hidden().contains(symbol))?;
+                let value = arena.sub(*term, arena.scale(*equation, &slope.recip()?));
+                let is_apart = !arena.symbols_of(&[value]).contains(&symbol);
+                (is_apart && arena.depends_on(value, self.hidden())).then_some((symbol, value))
+            });
+            // Of a symbol that has two values, either is one.
+            values.extend(value.filter(|(symbol, _)| !values.contains_key(symbol)));
+        }
+        values
     }
 
     /// An equation that no exact step solves, so that the normal form does not use it.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::analysis::{Class, Derivation, Origin, Outcome};
+use crate::analysis::{Class, Derivation, Origin, Outcome, Verdict};
 use crate::plant::{self, Plant};
 use crate::source::{Code, Diagnostic, Span, counted, listed};
 use pebo_cas::{Arena, Expr};
@@ -156,19 +156,20 @@ impl Candidate {
         Some(blocks(&self.plant, class.name())?.into_iter().map(block).collect::<Vec<_>>().join(" and "))
     }
 
-    /// The cascade and the verdict on it, in a line.
+    /// The cascade, if there is one, and the verdict on it, in a line.
     pub fn sentence(&self) -> String {
-        let class = match self.derivation.class {
-            Class::Pebo => "plain cascade",
-            Class::Gpebo => "generalised cascade",
+        let class = match (self.derivation.cascade.verdict, self.derivation.class) {
+            (Verdict::Skipped, _) => "",
+            (_, Class::Pebo) => ", plain cascade",
+            (_, Class::Gpebo) => ", generalised cascade",
         };
         let formulas = self.formulas();
         let phi = formulas.join(", ");
         match self.derivation.outcome {
-            Outcome::Accepted => format!("phi = [{phi}], {class}, is accepted"),
+            Outcome::Accepted => format!("phi = [{phi}]{class}, is accepted"),
             outcome => {
                 let why = self.derivation.diagnostics.first().map_or("", |d| &d.message);
-                format!("phi = [{phi}], {class}, is {}: {why}", outcome.word())
+                format!("phi = [{phi}]{class}, is {}: {why}", outcome.word())
             }
         }
     }

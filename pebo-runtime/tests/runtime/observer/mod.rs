@@ -1,5 +1,6 @@
 //! The whole observer: kinds of regression, sampling, re-basing, bounds, and random faults.
 
+mod angle;
 mod drift;
 mod kinds;
 pub(crate) mod rebasing;

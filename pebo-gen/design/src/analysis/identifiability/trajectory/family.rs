@@ -101,6 +101,7 @@ impl TrajectoryProblem<'_> {
         let mut found: Vec<BlindTrajectory> = Vec::new();
         for blind in hidden.map(|family| self.blind(family.condition, &family.observed)) {
             if !found.iter().any(|other| other.covers(&blind)) {
+                found.retain(|other| !blind.covers(other));
                 found.push(blind);
             }
         }

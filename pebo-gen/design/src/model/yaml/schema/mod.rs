@@ -131,7 +131,7 @@ pub(super) const MODEL: &[Key] = &[
         "The states in z1, z2, .. and the outputs; derived if left out; some states only make a partial observer",
     ),
     optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]", "Expressions that are zero by physics"),
-    optional("angles", RATES, "angles: {q: 2*pi}", "States that are angles, with their periods"),
+    optional("angles", RATES, "angles: {q: 2*pi}", "States and outputs that are angles, with their periods"),
     optional(
         "units",
         Shape::Map(&Shape::Text),
