@@ -387,7 +387,7 @@ const TABLE: &[Row] = &[
     ),
     (
         "an irreducible quartic, the flux of a salient motor",
-        "parameters: {L: 1, D: 1/2}\nx: [l, m]\ny: [i, j]\nu: [v, w]\nf_x: {l: v - i, m: w - j}\nphi: [l, m]\n\
+        "parameters: {L: 1, D: 0.5}\nx: [l, m]\ny: [i, j]\nu: [v, w]\nf_x: {l: v - i, m: w - j}\nphi: [l, m]\n\
          define: {a: l - L*i, b: m - L*j}\nidentities: [(a^2 + b^2 - D*(i*a + j*b))^2 - a^2 - b^2]",
         Accepted("static over-parameterised excitation"),
     ),

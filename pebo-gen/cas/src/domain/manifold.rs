@@ -267,7 +267,7 @@ impl Solver<'_> {
             let fraction = field.fraction(*equation)?;
             if !fraction.is_zero() && !self.arena.is_satisfied(*equation) {
                 numerators.push(fraction.numerator().clone());
-                left.push(*equation);
+                left.push(self.without_idle_symbols(&field, *equation, &fraction)?);
             }
         }
         *open = left;
@@ -291,6 +291,16 @@ impl Solver<'_> {
             }
         }
         Ok(ways)
+    }
+
+    /// The equation without symbols that cancel, if what it loses vanishes nowhere: `(v - w)/(2*k)` holds where `v - w`
+    /// is zero, and so binds no k.
+    fn without_idle_symbols(&self, field: &Field<'_>, equation: Expr, fraction: &Fraction) -> Result<Expr, Obstacle> {
+        let numerator = field.show(&field.of_polynomial(fraction.numerator())?);
+        let has_fewer = self.arena.symbols_of(&[numerator]).len() < self.arena.symbols_of(&[equation]).len();
+        let denominator = field.of_polynomial(fraction.denominator())?;
+        let is_safe = has_fewer && (denominator.to_constant().is_some() || field.signs().is_positive(&denominator)?);
+        Ok(if is_safe { numerator } else { equation })
     }
 
     /// True if an equation with these symbols may be solved for those of a group.

@@ -305,7 +305,8 @@ fn without_others(
     given
 }
 
-/// The claims from an identity, where the outputs' rates do not identify the unknowns; else the given.
+/// The claims from identities, where the outputs' rates, or functions of theta, do not identify the unknowns; else the
+/// given.
 fn from_identities(
     plant: &Plant,
     domain: &Domain,
@@ -313,15 +314,26 @@ fn from_identities(
     given: (Claim<Regression>, Claim<Identifiability>),
     found: &mut Vec<Diagnostic>,
 ) -> (Claim<Regression>, Claim<Identifiability>) {
-    if given.1.verdict != Verdict::Refuted || plant.identities.is_empty() {
+    let is_open = [Verdict::Refuted, Verdict::Undecided].contains(&given.1.verdict);
+    if !is_open || plant.identities.is_empty() || plant.arena.budget().is_exhausted() {
         return given;
     }
-    let mut others = Vec::new();
-    let other = regression::from_identities(plant, domain, cascade, inverse, &mut others);
-    let Some(both) = forms::proved(plant, domain, (class, cascade, inverse), other, &mut others) else { return given };
-    found.retain(|d| d.code != Code::NeverIdentifiable);
-    found.extend(others);
-    both
+    for affine in [true, false] {
+        let mut others = Vec::new();
+        let other = if affine {
+            regression::from_affine_identities(plant, domain, cascade, inverse, &mut others)
+        } else {
+            let is_other = given.1.verdict == Verdict::Refuted;
+            is_other.then(|| regression::from_identities(plant, domain, cascade, inverse, &mut others))
+        };
+        let both = other.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut others));
+        if let Some(both) = both {
+            found.retain(|d| !OPEN.contains(&d.code));
+            found.extend(others);
+            return both;
+        }
+    }
+    given
 }
 
 /// Formulas that have no value where the claim is made.

@@ -304,11 +304,13 @@ impl Plant {
 pub(super) fn assumed(arena: &Arena, assumptions: &[Assumption], parameters: &[Parameter]) -> Domain {
     let mut domain = Domain::default();
     for assumption in assumptions {
-        domain.facts.assume(assumption.expr, assumption.relation);
-        if assumption.relation != Relation::NonZero {
-            for above in domain.branches_above(arena, assumption.expr) {
-                domain.facts.assume(above, assumption.relation);
-            }
+        // Before it is a fact itself: a comparison of its branches with it needs none of what it says.
+        let branches = match assumption.relation {
+            Relation::NonZero => Vec::new(),
+            Relation::Positive | Relation::NonNegative => domain.branches_above(arena, assumption.expr),
+        };
+        for fact in [assumption.expr].into_iter().chain(branches) {
+            domain.facts.assume(fact, assumption.relation);
         }
     }
     for parameter in parameters {

@@ -39,8 +39,8 @@ pub(super) use outputs::with_all_outputs;
 use refusal::{
     OtherForm, hidden_by_signals, nonlinear, not_in_other_forms, not_recovered, not_tried, refuted, undecided,
 };
-pub(super) use static_relation::from_identities;
 use static_relation::from_relations;
+pub(super) use static_relation::{from_affine_identities, from_identities};
 
 const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
     exponentials, sines and cosines of z were tried";

@@ -56,6 +56,23 @@ pub(in crate::analysis) fn from_identities(
     constant_relation(plant, domain, (cascade, left_inverse), (&identities, plant.identities[0].span), found)
 }
 
+/// A static regression from the identities that are affine in the transform; none if these are all, or there are none.
+pub(in crate::analysis) fn from_affine_identities(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Claim<Regression>> {
+    let identities = cleared::in_z(plant, domain, left_inverse?);
+    let affine: Vec<Equation> =
+        identities.iter().filter(|e| combined::affine(plant, domain, e.rate).is_some()).cloned().collect();
+    if affine.is_empty() || affine.len() == identities.len() {
+        return None;
+    }
+    combined::joined(plant, domain, cascade, left_inverse, &affine, found)
+}
+
 /// A static regression from relations between the components of the transform; none if there are none, or theta cannot
 /// be recovered from them.
 pub(super) fn from_relations(
