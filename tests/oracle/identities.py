@@ -22,6 +22,7 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import mpmath
 import sympy
 from sympy import Float, Matrix, Rational, symbols
 
@@ -70,7 +71,11 @@ def points(factor, draw):
         start, end = ([Rational(draw.randint(-30, 30), 7) for _ in range(2)] for _ in range(2))
         share = sympy.Dummy()
         line = sympy.expand(factor.subs({A: start[0] + share * end[0], B: start[1] + share * end[1]}, simultaneous=True))
-        for root in sympy.Poly(line, share).nroots(n=DIGITS, maxsteps=200) if line.has(share) else []:
+        try:
+            roots = sympy.Poly(line, share).nroots(n=DIGITS, maxsteps=200) if line.has(share) else []
+        except mpmath.libmp.NoConvergence:
+            continue
+        for root in roots:
             if abs(sympy.im(root)) < Float(10) ** (-DIGITS // 2):
                 root = sympy.re(root)
                 found.append({A: start[0] + root * end[0], B: start[1] + root * end[1]})

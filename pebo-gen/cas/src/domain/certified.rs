@@ -34,8 +34,8 @@ const DIGITS: i32 = 256;
 /// Bits that a step with the inverse in floating point surely adds.
 const BITS_A_STEP: u32 = 24;
 
-/// Bits of the rational values: short ones keep what is computed with them short.
-const SHORT: i32 = 12;
+/// `2^41 + 1`: it leaves 12 of the 53 bits of a rational value, as short ones keep what is computed with them short.
+const ROUNDING: f64 = 2_199_023_255_553.0;
 
 /// Equations without a formula for a solution.
 #[derive(Clone, Debug, Default)]
@@ -221,13 +221,11 @@ impl System {
     }
 }
 
-/// The value to a few bits.
+/// The value to a few bits: rounded by a sum with a multiple of itself (Veltkamp 1968).
 fn short(value: f64) -> f64 {
-    if value == 0.0 || !value.is_normal() {
-        return 0.0;
-    }
-    let unit = 2.0_f64.powi(SHORT - 1 - value.abs().log2().floor() as i32);
-    if unit.is_finite() && unit > 0.0 { (value * unit).round() / unit } else { value }
+    let multiple = value * ROUNDING;
+    let rounded = multiple - (multiple - value);
+    if rounded.is_finite() { rounded } else { value }
 }
 
 /// The inverse of a square matrix by elimination with pivots; none if a pivot is lost in rounding.

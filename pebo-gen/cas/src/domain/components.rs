@@ -44,7 +44,7 @@ impl Domain {
         while let Some(next) = open.pop() {
             match next.finer(arena, formulas, groups)? {
                 Finer::Cells(finer) => open.extend(finer.into_iter().rev()),
-                Finer::Whole(cell) => found.push(cell),
+                Finer::Whole(cell) => found.push(*cell),
             }
             if open.len() + found.len() > MOST_CELLS {
                 return Err(Obstacle::TooLarge);
@@ -57,7 +57,7 @@ impl Domain {
 /// A cell, as it is taken apart.
 enum Finer {
     Cells(Vec<OpenCell>),
-    Whole(Cell),
+    Whole(Box<Cell>),
 }
 
 impl OpenCell {
@@ -108,7 +108,7 @@ impl OpenCell {
         if let Some(equation) = there.manifold.coupled(arena) {
             return Err(Obstacle::Unsolved(arena.print(equation)));
         }
-        Ok(Finer::Whole(Cell { domain: there, sides: self.cell.sides }))
+        Ok(Finer::Whole(Box::new(Cell { domain: there, sides: self.cell.sides })))
     }
 
     /// The cells on both sides of a divider, and on it if it varies.

@@ -90,6 +90,7 @@ impl Manifold {
     }
 
     /// The manifold of other equations, solved for the same symbols.
+    #[must_use]
     pub fn of(&self, arena: &Arena, facts: &Facts, equations: Vec<Expr>) -> Self {
         Self::new(arena, facts, equations, self.groups.clone())
     }
