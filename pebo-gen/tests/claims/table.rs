@@ -83,7 +83,7 @@ const TABLE: &[Row] = &[
     (
         "reciprocal",
         "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: 1/x}\nphi: [x]\nassume: [x > 0]",
-        Accepted("implicit linear instant"),
+        Accepted("gpebo static linear excitation"),
     ),
     (
         "root",

@@ -10,7 +10,7 @@ use crate::graph::arena::Arena;
 use crate::graph::conditions::Regularity;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::Expr;
-use crate::linear::combination::combine;
+use crate::linear::comparison::combine;
 use crate::number::interval::{Interval, Precision};
 use crate::tower::{Field, Obstacle};
 

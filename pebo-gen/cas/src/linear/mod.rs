@@ -6,6 +6,7 @@
 
 mod cofactors;
 pub mod combination;
+pub mod comparison;
 pub mod contrast;
 pub mod determinant;
 mod lifting;

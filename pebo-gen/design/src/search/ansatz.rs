@@ -11,7 +11,7 @@
 
 use pebo_cas::Expr;
 use pebo_cas::linear::Echelon;
-use pebo_cas::linear::combination::equations;
+use pebo_cas::linear::comparison::equations;
 use pebo_cas::linear::residues::ResidueRows;
 use pebo_cas::poly::{PrimeField, Residue};
 use pebo_cas::tower::{Field, Fraction, Obstacle};

@@ -16,7 +16,7 @@ use crate::plant::{self, Formula, Plant, TransformOrigin};
 use crate::source::{Code, Diagnostic, listed};
 use pebo_cas::domain::zero::{Answer, decide, point_of};
 use pebo_cas::forms::opaque::as_written;
-use pebo_cas::linear::combination::combine;
+use pebo_cas::linear::comparison::combine;
 use pebo_cas::linear::contrast::contrast;
 use pebo_cas::number::interval::Precision;
 use pebo_cas::tower::{Field, Obstacle};

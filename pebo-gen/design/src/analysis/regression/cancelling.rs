@@ -6,7 +6,7 @@ use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::tidy::shortest;
-use pebo_cas::linear::combination::{cancelling, relations};
+use pebo_cas::linear::comparison::{cancelling, relations};
 use pebo_cas::linear::pivots::pivots;
 use pebo_cas::number::interval::{Interval, Precision};
 use pebo_cas::tower::{Field, Obstacle};

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::plant::Plant;
 use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::linear::combination::combine;
+use pebo_cas::linear::comparison::combine;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Symbol};
 

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::forms::opaque::OpaqueTerms;
-use pebo_cas::linear::combination::combine;
+use pebo_cas::linear::comparison::combine;
 use pebo_cas::poly::Monomial;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};

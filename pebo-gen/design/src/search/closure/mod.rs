@@ -17,7 +17,7 @@ mod products;
 use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::linear::Echelon;
-use pebo_cas::linear::combination::equations;
+use pebo_cas::linear::comparison::equations;
 use pebo_cas::poly::{Monomial, Poly};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};

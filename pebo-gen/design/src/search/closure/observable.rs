@@ -8,7 +8,7 @@
 use crate::plant::matrix::dot;
 use pebo_cas::Expr;
 use pebo_cas::linear::Echelon;
-use pebo_cas::linear::combination::{combine, equations};
+use pebo_cas::linear::comparison::{combine, equations};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
 use crate::search::problem::Problem;

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::linear::Echelon;
-use pebo_cas::linear::combination::equations;
+use pebo_cas::linear::comparison::equations;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Function, Node, Relation, Symbol};
 

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pebo_cas::linear::combination::equations;
+use pebo_cas::linear::comparison::equations;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
 

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use pebo_cas::linear::combination::equations;
+use pebo_cas::linear::comparison::equations;
 use pebo_cas::linear::solve;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
