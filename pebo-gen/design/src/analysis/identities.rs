@@ -42,7 +42,8 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
             )
             .note("claims about an empty set of values say nothing")
             .help(
-                "check that they do not exclude one another, and that each identity can be solved for one of its names",
+                "check that they do not exclude one another, that none follows from the others, and that each changes \
+                 its sign where it holds, as `a - b` does and its square does not",
             ),
         );
         return Verdict::Undecided;
