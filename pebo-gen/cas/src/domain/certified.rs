@@ -34,6 +34,10 @@ const DIGITS: i32 = 256;
 /// Bits that a step with the inverse in floating point surely adds.
 const BITS_A_STEP: u32 = 24;
 
+/// The width of an equation's values over the box, relative to what its slopes explain: terms that cancel and interval
+/// arithmetic widen it, a jump makes it that of the jump.
+const MOST_CHANGE: f64 = 1e12;
+
 /// `2^41 + 1`: it leaves 12 of the 53 bits of a rational value, as short ones keep what is computed with them short.
 const ROUNDING: f64 = 2_199_023_255_553.0;
 
@@ -177,6 +181,15 @@ impl System {
         let residual = self.residual(arena, &at, p)?;
         let slopes = self.enclosed(arena, &self.jacobian, &values, p)?;
         let slope = |k: usize, unknown: usize| &slopes[k * self.symbols.len() + dependent[unknown]];
+        // Slopes say nothing of a function that jumps within the box, where its enclosure is wide.
+        let whole = self.enclosed(arena, &self.equations, &values, p)?;
+        for (k, value) in whole.iter().enumerate() {
+            let size = |slope: &Interval| slope.lo().abs().max(slope.hi().abs());
+            let change: f64 = radii.iter().enumerate().map(|(j, radius)| size(slope(k, j)) * radius.to_f64()).sum();
+            if value.width() > MOST_CHANGE * change {
+                return None;
+            }
+        }
         for (i, row) in inverse.iter().enumerate() {
             let row: Vec<Interval> =
                 row.iter().map(|y| exact(&Rational::from_f64_exact(*y)?)).collect::<Option<_>>()?;
@@ -295,6 +308,9 @@ mod tests {
         let arena = Arena::new();
         let [a, b] = ["a", "b"].map(|name| arena.variable(name));
         let square = |e| arena.mul(e, e);
+        // A function that jumps over zero.
+        let step = arena.add(a, arena.call(Function::Sign, &[a]));
+        assert!(completed(&arena, vec![arena.sub(step, arena.mul(b, b))], &[(a, 0), (b, 0)]).is_none());
         // A double root, a dependent pair, no real solution.
         let line = arena.sub(a, b);
         for equations in [
