@@ -65,8 +65,11 @@ fn on_cells(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Answer> {
         let branch = cell.domain.analytic(arena, &[expr])[0];
         match decide_as_written(arena, branch, &cell.domain) {
             Answer::Zero => {}
-            // A cell of other values than those that are given refutes nothing at these.
-            Answer::NonZero(witness) if cell.domain.fixed == domain.fixed => return Some(Answer::NonZero(witness)),
+            // A cell of other values than those that are given refutes nothing at these. The branch may hold fewer
+            // symbols than the expression: a witness has the values of all.
+            Answer::NonZero(_) if cell.domain.fixed == domain.fixed => {
+                return refute(arena, expr, &cell.domain).map(Answer::NonZero);
+            }
             Answer::NonZero(_) | Answer::Open(_) => return None,
         }
     }
@@ -145,4 +148,31 @@ pub fn refute(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Witness> {
 /// Searches for a point of the domain at which the expression provably has a value.
 pub fn point_of(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Point> {
     domain.points(arena, &[expr]).take(MOST_POINTS).find(|point| arena.exists_at(expr, point))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Function, Rational, Relation};
+
+    #[test]
+    fn a_witness_on_a_cell_has_the_values_of_all_symbols() {
+        let arena = Arena::new();
+        let [u, z, p] = ["u", "z", "p"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        // The signs differ where 1 + p/4 < z^2 < 1 + p/3 alone.
+        let side = |share: i64| {
+            let part = arena.scale(p, &Rational::new(1, share).unwrap());
+            let above = arena.sub(arena.sub(arena.mul(z, z), part), arena.one());
+            arena.mul(u, arena.sub(arena.one(), arena.call(Function::Sign, &[above])))
+        };
+        let difference = arena.sub(side(3), side(4));
+        let Answer::NonZero(witness) = decide(&arena, difference, &domain) else { panic!("it is not zero") };
+        assert_eq!(
+            witness.point.keys().copied().collect::<Vec<_>>(),
+            arena.symbols_of(&[difference]).into_iter().collect::<Vec<_>>()
+        );
+        assert!(arena.separated_from_zero(difference, &witness.point).is_some());
+    }
 }
