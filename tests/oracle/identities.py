@@ -88,6 +88,7 @@ def observable(point, product, functions):
     """True if the differentials have rank 2 at the point."""
     rows = [[sympy.diff(e, x).subs(point).evalf(DIGITS) for x in (A, B)] for e in [product, *functions]]
     minors = [Matrix([r, s]).det() for i, r in enumerate(rows) for s in rows[:i]]
+    # The points satisfy F to some 30 digits, so that a minor which is zero there is far below this.
     return any(abs(minor) > Float(10) ** (-DIGITS // 3) for minor in minors)
 
 

@@ -63,6 +63,12 @@ fn what_is_said_of_trajectories_is_stated_as_data() {
     assert!(battery.contains(rest) && battery.contains(motion), "{battery}");
     let motor = stated(include_str!("../../../models/motor_flux.yaml"));
     assert!(motor.contains("\"zero\": [\"omega\"]") && !motor.contains("undecided\": [{"), "{motor}");
+    // Of what is undecided nothing is claimed.
+    let cells = stated(
+        "model: m\nparameters: {k: 2}\nx: [a, b]\ny: [r]\nu: [v, w]\nf_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}\n\
+         f_y: {r: a + b}\nphi: [a, b]\n",
+    );
+    assert!(cells.contains("\"undecided\": [{\"zero\": [\"v*(v - 1) - 1\"]}]"), "{cells}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ pub mod injectivity;
 mod jump;
 pub mod manifold;
 pub mod reducible;
+pub(crate) mod solution;
 pub mod zero;
 
 use std::cell::Cell;
@@ -24,7 +25,8 @@ use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::number::interval::Precision;
 use crate::{Facts, Rational, Relation};
-use manifold::{Choice, Manifold};
+use manifold::Manifold;
+use solution::Choice;
 
 /// The greatest number of points that a search examines.
 const MOST_TRIALS: u64 = 400;

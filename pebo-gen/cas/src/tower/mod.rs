@@ -46,7 +46,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rustc_hash::FxHashMap;
 
 use super::poly::{Poly, Work};
-use crate::domain::manifold::Step;
+use crate::domain::solution::Step;
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Symbol};
 use crate::{Domain, Facts};

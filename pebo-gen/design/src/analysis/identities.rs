@@ -155,9 +155,11 @@ fn kept(plant: &Plant, domain: &Domain, identity: &Formula) -> (Verdict, Option<
             let refusal = Diagnostic::error(Code::IdentityUndecided, identity.span, message)
                 .label(along(arena, rate))
                 .note(format!("obstacle: {obstacle}"))
-                .help(
-                    "write the identity so that it can be solved for one of its names, or give the parameters values",
-                );
+                .help(if plant.parameters.iter().all(|parameter| parameter.value.is_some()) {
+                    "write the identity so that it can be solved for one of its names"
+                } else {
+                    "write the identity so that it can be solved for one of its names, or give the parameters values"
+                });
             (Verdict::Undecided, Some(refusal))
         }
     }

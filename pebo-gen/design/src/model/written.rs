@@ -60,7 +60,7 @@ pub struct Model {
     pub phi_left: Vec<Entry<Formula>>,
     /// Expressions that are zero by physics.
     pub identities: Vec<Formula>,
-    /// States that are angles, with their periods.
+    /// States and outputs that are angles, with their periods.
     pub angles: Vec<Entry<Formula>>,
     /// Units of parameters and signals.
     pub units: Vec<Entry<Spanned<String>>>,

@@ -57,7 +57,7 @@ pub struct Plant {
     /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of
     /// the two.
     pub identities: Vec<Formula>,
-    /// States that are angles, with their period.
+    /// States and outputs that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
     /// Units of parameters and signals, as far as the author gives them.
     pub units: BTreeMap<Symbol, String>,

@@ -189,7 +189,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         for ((angle, last), period) in self.table[layout.y.clone()].iter_mut().zip(&mut self.last_outputs).zip(periods)
         {
             if angle.is_finite() {
-                // Until the first one, the recorded angle is the last.
+                // The first one begins the count of turns.
                 *angle = unwrapped(*angle, last.unwrap_or(*angle), *period);
                 *last = Some(*angle);
             }

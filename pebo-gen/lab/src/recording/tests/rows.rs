@@ -156,3 +156,26 @@ fn a_caller_may_end_it() {
     assert!(matches!(failure, Err(Failure::Stopped { line: 2049 })), "{failure:?}");
     assert_eq!(seen, [1024, 2048]);
 }
+
+/// A compass reads an angle within a turn; the replay is that of the angle itself.
+#[test]
+fn an_output_that_is_an_angle_goes_on_over_its_turns() {
+    use std::f64::consts::TAU;
+
+    let compass = "model: m\nx: [b]\ny: [q]\nu: [f]\nangles: {q: 2*pi}\nf_x: {b: 0}\nf_y: {q: f - b}\nphi: [b]\n\
+                   observer: {gain: 1, filter: 5}\n";
+    let recording = |read: &dyn Fn(f64) -> f64| {
+        let rows = (0..400).map(|k| format!("{},{},1\n", f64::from(k) / 16.0, read(2.0 + 0.75 * f64::from(k) / 16.0)));
+        format!("t,q,f\n{}", rows.collect::<String>())
+    };
+    let last = |model: &str, read: &dyn Fn(f64) -> f64| -> f64 {
+        let (_, estimates) = replay(model, &recording(read)).expect("a replay");
+        estimates.lines().last().and_then(|row| row.split(',').nth(1)?.parse().ok()).expect("an estimate")
+    };
+    let within_a_turn = |angle: f64| angle - TAU * (angle / TAU).round();
+    let (whole, wrapped) = (last(compass, &|angle| angle), last(compass, &within_a_turn));
+    // Three turns are counted with the rounding of their number.
+    assert!((whole - 0.25).abs() < 1e-3 && (wrapped - whole).abs() < 1e-12, "{whole} {wrapped}");
+    let ignored = last(&compass.replace("angles: {q: 2*pi}\n", ""), &within_a_turn);
+    assert!((ignored - whole).abs() > 0.01, "{ignored} {whole}");
+}
