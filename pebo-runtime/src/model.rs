@@ -35,6 +35,8 @@ pub enum Regression {
 /// | [`flow`](Self::flow) | `h`, `lambda` | at both ends of an interval |
 /// | [`regression`](Self::regression) | `phi_0`, `phi_1` | at both ends |
 /// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
+/// | [`theta`](Self::theta) | `theta` from the estimate of `eta` | once for each sample |
+/// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to four times |
 /// | [`recover`](Self::recover) | `phi_left` | once for each sample |
 ///
 /// [`h`](Self::h), [`phi_0`](Self::phi_0), [`phi_1`](Self::phi_1), [`phi_left`](Self::phi_left) and the others give one
@@ -90,6 +92,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// `theta` from the estimated unknown: `eta` itself in a linear parameterisation, a part of it in an
     /// over-parameterised one.
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
+
+    /// The unknown `eta` as a function of `theta`, where it has more components: its estimate is then kept among the
+    /// values of this function, see [`Observer`](crate::Observer). None where `eta` is `theta`.
+    fn functions(&self, _theta: &SVector<Self::Scalar, NZ>) -> Option<Functions<Self::Scalar, NE, NZ>> {
+        None
+    }
 
     /// The left inverse `phi_left`: `x` such that `z = phi(x, y)`. It may have no value at an estimate of `z` beyond
     /// the range of `phi`: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and
@@ -152,6 +160,15 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     fn phi_left(&self, z: &SVector<Self::Scalar, NZ>, y: &SVector<Self::Scalar, NY>) -> SVector<Self::Scalar, NX> {
         self.recover(z, &self.terms(y))
     }
+}
+
+/// A function of `theta` at one value, with its derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Functions<S: Real, const NE: usize, const NZ: usize> {
+    /// Its components.
+    pub values: SVector<S, NE>,
+    /// Their derivatives: a row for each, a column for each component of `theta`.
+    pub slopes: SMatrix<S, NE, NZ>,
 }
 
 /// Marks a model that can be re-based exactly.

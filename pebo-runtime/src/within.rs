@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::{Fault, Flow, Model, Real, Rebase, Regression, Sides};
+use crate::{Fault, Flow, Functions, Model, Real, Rebase, Regression, Sides};
 
 /// A model whose recovered state is projected onto bounds `lower <= x <= upper`, component by component.
 ///
@@ -71,6 +71,10 @@ where
 
     fn theta(&self, eta: &SVector<S, NE>) -> SVector<S, NZ> {
         self.model.theta(eta)
+    }
+
+    fn functions(&self, theta: &SVector<S, NZ>) -> Option<Functions<S, NE, NZ>> {
+        self.model.functions(theta)
     }
 
     fn begin(&self, extension: &M::Extension, terms: &M::Terms) -> M::Extension {

@@ -89,7 +89,7 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// Names that an emitted module declares or imports, and those of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 60] = [
+pub(super) const TYPES: [&str; 61] = [
     "Bounded",
     "Default",
     "Drem",
@@ -102,6 +102,7 @@ pub(super) const TYPES: [&str; 60] = [
     "FiniteTime",
     "Flow",
     "From",
+    "Functions",
     "Fundamental",
     "Gate",
     "Gradient",

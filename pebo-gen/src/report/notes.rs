@@ -43,7 +43,10 @@ pub(crate) fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String
 pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
     let (unknowns, components) = (regression.eta.len(), plant.theta.len());
     let more = (unknowns > components).then(|| {
-        format!("eta has {unknowns} components and theta has {components}: all components of eta have to be excited")
+        format!(
+            "eta has {unknowns} components and theta has {components}: a gradient or DREM needs all of eta excited, least \
+             squares keep it a function of theta"
+        )
     });
     let other = regression.alternative.map(|other| match other.form {
         RelationForm::Static => format!(

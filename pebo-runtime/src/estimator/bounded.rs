@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Estimator, Uncertain};
+use super::{Estimator, Information, Uncertain};
 use crate::numeric::linear::solve;
 use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
@@ -75,6 +75,10 @@ where
     fn shift(&mut self, shift: &SVector<S, NE>) {
         self.estimator.shift(shift);
         self.moved.add(shift);
+    }
+
+    fn constrain(&mut self, onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {
+        self.estimator.constrain(onto);
     }
 
     fn turn(&mut self, turn: &Turn<S, NE>) {

@@ -197,6 +197,31 @@ impl<S: Real, const N: usize> Information<S, N> {
         }
     }
 
+    /// The equations of `s` in `d = offset + slopes s`.
+    ///
+    /// Where the weights say nothing of a component of `s`, its own weight is 0, and it is 0 in what fits best.
+    #[must_use]
+    pub fn along<const M: usize>(&self, offset: &SVector<S, N>, slopes: &SMatrix<S, N, M>) -> Information<S, M> {
+        let mut along = Information { upper: SMatrix::zeros(), weight: SVector::zeros(), target: SVector::zeros() };
+        for i in 0..N {
+            let row = self.row(i);
+            let [right] = (row * offset).data.0[0];
+            along.rotate::<true>(&(row * slopes).transpose(), self.target[i] - right, self.weight[i]);
+        }
+        along
+    }
+
+    /// The sum of weighted squares that a vector leaves, less the least one.
+    pub fn misfit(&self, d: &SVector<S, N>) -> S {
+        let mut misfit = S::zero();
+        for i in 0..N {
+            let [value] = (self.row(i) * d).data.0[0];
+            let rest = value - self.target[i];
+            misfit += self.weight[i] * rest * rest;
+        }
+        misfit
+    }
+
     /// The same weights with right sides of 0, which the compiler then knows and need not fetch.
     pub(crate) fn without_target(&self) -> Self {
         Self { target: SVector::zeros(), ..*self }

@@ -134,6 +134,12 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
         self.theta.add(shift);
     }
 
+    fn constrain(&mut self, onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {
+        if let Some(constrained) = onto(self.theta.value(), &self.information) {
+            self.theta = Sum::new(constrained);
+        }
+    }
+
     fn turn(&mut self, turn: &Turn<S, NE>) {
         self.theta.add(&turn.of_unknown(self.theta.value()));
         self.information.turn(turn);

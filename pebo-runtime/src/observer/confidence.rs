@@ -4,9 +4,9 @@
 //! that of sensors: with a [`SampledRegression`](crate::SampledRegression), in the [output form](crate::OutputForm) or
 //! of a static regression.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
-use super::{Observer, check};
+use super::{Observer, check, constrained};
 use crate::estimator::Information;
 use crate::extension::Extension;
 use crate::regression::{Outcome, Rows};
@@ -48,7 +48,7 @@ where
     pub fn standard_error_after(&self, dt: M::Scalar) -> Option<SVector<M::Scalar, NX>> {
         let terms = self.terms.as_ref()?;
         let eta = self.state.estimator.estimate();
-        let root = self.state.estimator.covariance_root(dt)?;
+        let root = self.covariance_root(dt)?;
         let at = |eta: SVector<M::Scalar, NE>| {
             self.model.recover_unbounded(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
         };
@@ -89,7 +89,7 @@ where
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
         let regressor = outcome.regressor();
         let error = outcome.regressand() - regressor * self.state.estimator.estimate();
-        let root = regressor * self.state.estimator.covariance_root(dt).ok_or(Fault::State)?;
+        let root = regressor * self.covariance_root(dt).ok_or(Fault::State)?;
         // White noise of intensity 1 has the variance 1/dt in a sample.
         let scale = Real::sqrt(dt);
         let (value, root) = (error * scale, root * scale);
@@ -100,6 +100,13 @@ where
             normalised_square += least.absorb_and_judge(&row.transpose(), value);
         }
         if Real::is_finite(normalised_square) { Ok(Innovation { value, normalised_square }) } else { Err(Fault::State) }
+    }
+
+    /// A root of the covariance of the unknown, which is as uncertain as `theta` is where it holds functions of it.
+    fn covariance_root(&self, dt: M::Scalar) -> Option<SMatrix<M::Scalar, NE, NE>> {
+        let root = self.state.estimator.covariance_root(dt)?;
+        let Some(functions) = self.model.functions(&self.theta()) else { return Some(root) };
+        Some(constrained::covariance_root(&root, &functions.slopes).unwrap_or(root))
     }
 }
 

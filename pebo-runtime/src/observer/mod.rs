@@ -1,6 +1,7 @@
 //! The observer: estimates the unmeasured state from samples of outputs and inputs.
 
 mod confidence;
+mod constrained;
 mod rebasing;
 
 use nalgebra::{SMatrix, SVector};
@@ -34,6 +35,13 @@ use rebasing::Rebasing;
 /// accepted one, with the time since that one as `dt`; if the input changed meanwhile, a [`Gap`](crate::Gap) has the
 /// mean input. [`Limits`](crate::Limits) find samples that are finite but out of range or saturated, before they get
 /// here. The whole state can be saved and restored: [`state`](Self::state).
+///
+/// # Functions of theta
+///
+/// Where the regression's unknown holds functions of `theta` ([`Model::functions`]), as `theta` and `theta^2`, an
+/// estimator with an information matrix keeps its estimate among their values: after each sample it goes to the one
+/// that its information is nearest to. So an unknown that the samples excite in some directions only is known in all of
+/// which `theta` leaves no choice.
 ///
 /// # Re-basing
 ///
@@ -269,6 +277,7 @@ where
         }
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+        estimator.constrain(|eta, information| constrained::nearest(&self.model, eta, information));
         self.accept(Next { extension, regression, estimator }, terms, y)
     }
 

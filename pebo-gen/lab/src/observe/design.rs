@@ -44,6 +44,8 @@ pub(crate) struct Design {
     pub(crate) primitive: Option<Program>,
     /// From eta to theta.
     pub(crate) theta: Program,
+    /// From theta to eta, then its derivatives by rows, where eta has more components.
+    pub(crate) functions: Option<Program>,
     /// From z, y to the recovered states.
     pub(crate) phi_left: Program,
     /// The number of unknowns eta of the model's regression.
@@ -115,6 +117,16 @@ impl Design {
                 RegressionKind::Dynamic | RegressionKind::Static => None,
             },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
+            functions: if regression.eta.len() > plant.theta.len() && !settings.output {
+                let slopes = regression
+                    .eta
+                    .iter()
+                    .flat_map(|eta| plant.theta.iter().map(|theta| arena.derivative(*eta, *theta)));
+                let both: Vec<Expr> = regression.eta.iter().copied().chain(slopes).collect();
+                Some(compile(&[&plant.theta], &both)?)
+            } else {
+                None
+            },
             phi_left: compile(&[&plant.z, &y], &states)?,
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
             is_static: regression.kind == RegressionKind::Static,

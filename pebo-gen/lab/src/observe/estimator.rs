@@ -9,8 +9,8 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Drem, Estimator, Fault, FiniteTime, Gradient, Kreisselmeier, LeastSquares, NormalisedGradient, RegressorExtension,
-    Response, Turn, Uncertain,
+    Drem, Estimator, Fault, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
+    RegressorExtension, Response, Turn, Uncertain,
 };
 
 use super::setup::{self, Covariance, Extension};
@@ -104,6 +104,12 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
         self.face_mut().shift(shift);
+    }
+
+    fn constrain(&mut self, onto: impl FnOnce(&SVector<f64, N>, &Information<f64, N>) -> Option<SVector<f64, N>>) {
+        if let Self::Squares(squares) = self {
+            Estimator::<f64, N, N>::constrain(squares, onto);
+        }
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {

@@ -9,8 +9,8 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Fundamental, Gate, Integrator, Limits, Model, Observer, Regression, Sides,
-    Uncertain, Within,
+    Bounded, Extension, Fault, Flow, Functions, Fundamental, Gate, Integrator, Limits, Model, Observer, Regression,
+    Sides, Uncertain, Within,
 };
 
 use crate::settings::Prediction;
@@ -143,6 +143,7 @@ struct Derived<X, K, const N: usize> {
     regression: RefCell<Interpreter>,
     primitive: Option<RefCell<Interpreter>>,
     theta: RefCell<Interpreter>,
+    functions: Option<RefCell<Interpreter>>,
     phi_left: RefCell<Interpreter>,
     /// In the output form: the rows of the regression with a rate, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
@@ -169,6 +170,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             regression: interpreter(&design.regression),
             primitive: design.primitive.as_ref().map(interpreter),
             theta: interpreter(&design.theta),
+            functions: design.functions.as_ref().map(interpreter),
             phi_left: interpreter(&design.phi_left),
             kind: PhantomData,
         }
@@ -302,6 +304,13 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
             return *eta;
         }
         column(&mut self.theta.borrow_mut().evaluate(|place| eta[place]), self.nz)
+    }
+
+    fn functions(&self, theta: &SVector<f64, N>) -> Option<Functions<f64, N, N>> {
+        let mut functions = self.functions.as_ref()?.borrow_mut();
+        let mut values = functions.evaluate(|place| theta[place]);
+        let eta = column(&mut values, self.ne);
+        Some(Functions { values: eta, slopes: rows(&mut values, self.nz) })
     }
 
     fn begin(&self, extension: &X, y: &SVector<f64, N>) -> X {

@@ -1,7 +1,7 @@
 //! An estimator with the Gramian of its data.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Estimator, Fault, Turn, Uncertain};
+use pebo_runtime::{Estimator, Fault, Information, Turn, Uncertain};
 
 use super::estimator::PaddedEstimator;
 use super::excitation::{ComponentInformation, Gramian};
@@ -46,6 +46,10 @@ impl<const N: usize> Estimator<f64, N, N> for MonitoredEstimator<N> {
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
         self.estimator.shift(shift);
+    }
+
+    fn constrain(&mut self, onto: impl FnOnce(&SVector<f64, N>, &Information<f64, N>) -> Option<SVector<f64, N>>) {
+        self.estimator.constrain(onto);
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {

@@ -20,7 +20,7 @@ use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::definition::tasks::varying;
-use super::definition::{Argument, Definitions, Group, PERIODS, VELOCITY};
+use super::definition::{Argument, Definitions, FUNCTIONS, Group, PERIODS, VELOCITY};
 use super::literal::Scalar;
 use super::module::prose::section;
 pub use cause::Cause;
@@ -246,7 +246,7 @@ fn measured(groups: &[Group]) -> Vec<Expr> {
 
 /// The function runs with every sample.
 fn is_measured(group: &Group) -> bool {
-    ![VELOCITY, PERIODS, "theta"].contains(&group.name)
+    ![VELOCITY, PERIODS, FUNCTIONS, "theta"].contains(&group.name)
 }
 
 /// The formulas of a group.

@@ -6,7 +6,7 @@ pub(crate) mod choice;
 mod fundamental;
 pub(crate) mod tasks;
 
-use Argument::{Eta, Extension, U, Y, Z};
+use Argument::{Eta, Extension, Theta, U, Y, Z};
 
 use std::collections::BTreeMap;
 
@@ -26,6 +26,7 @@ pub(super) enum Argument {
     U,
     Z,
     Eta,
+    Theta,
 }
 
 impl Argument {
@@ -37,6 +38,7 @@ impl Argument {
             Self::U => "u",
             Self::Z => "z",
             Self::Eta => "eta",
+            Self::Theta => "theta",
         }
     }
 }
@@ -73,6 +75,15 @@ pub(super) const VELOCITY: &str = "velocity";
 /// The periods of the outputs, of a model with outputs that are angles.
 pub(super) const PERIODS: &str = "periods";
 
+/// The regression's unknowns as functions of theta, and their derivatives, of a model that has more of them.
+pub(super) const FUNCTIONS: &str = "functions";
+
+/// The values of these functions.
+pub(super) const ETA: &str = "eta";
+
+/// Their derivatives.
+pub(super) const SLOPES: &str = "slopes";
+
 /// One function.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
@@ -93,12 +104,13 @@ pub(super) struct Group<'d> {
 
 /// The functions of `Model` by name: their arguments, `Y` for the terms of the sample, and the definitions whose values
 /// they give.
-pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 7] = [
+pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 8] = [
     (PERIODS, &[], &[PERIODS]),
     ("flow", &[Y, U], &["h", "lambda"]),
     ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
     ("primitive", &[Extension, Y], &["primitive_0", "primitive_1"]),
     ("theta", &[Eta], &["theta"]),
+    (FUNCTIONS, &[Theta], &[ETA, SLOPES]),
     ("recover", &[Z, Y], &["phi_left"]),
     (VELOCITY, &[Z, Y], &[VELOCITY]),
 ];
@@ -116,6 +128,8 @@ pub(super) struct Definitions<'a> {
     y: Vec<Symbol>,
     u: Vec<Symbol>,
     z: Vec<Symbol>,
+    /// theta, where the unknowns are functions of it that a step computes.
+    theta: Vec<Symbol>,
     /// chi of an integrator, xi of a fundamental solution.
     pub(super) chi: Vec<Symbol>,
     /// The columns of Psi, for a fundamental solution.
@@ -190,6 +204,12 @@ impl<'a> Definitions<'a> {
             }
         }
         functions.push(vector("theta", "NZ", regression.theta.clone()));
+        let theta = if regression.eta.len() > plant.theta.len() { plant.theta.clone() } else { Vec::new() };
+        if !theta.is_empty() {
+            let slopes = |eta: &Expr| theta.iter().map(|theta| arena.derivative(*eta, *theta)).collect();
+            functions.push(vector(ETA, "NE", regression.eta.clone()));
+            functions.push(matrix(SLOPES, "NE", "NZ", &regression.eta.iter().map(slopes).collect::<Vec<_>>()));
+        }
         let states = left_inverse.x.iter().map(|state| state.1).collect();
         functions.push(vector("phi_left", "NX", states));
         if let Some(pebo_design::plant::Class::Mechanical(mechanical)) = &plant.class {
@@ -207,6 +227,7 @@ impl<'a> Definitions<'a> {
             y,
             u: plant.u.clone(),
             z: plant.z.clone(),
+            theta,
             chi,
             psi,
             psi_entries,
@@ -230,6 +251,7 @@ impl<'a> Definitions<'a> {
             (Argument::U, _) => vec![column(None, &self.u)],
             (Argument::Z, _) => vec![column(None, &self.z)],
             (Argument::Eta, _) => vec![column(None, &self.regression.eta_symbols)],
+            (Argument::Theta, _) => vec![column(None, &self.theta)],
             (Argument::Extension, Class::Pebo) => vec![column(Some("chi"), &self.chi)],
             (Argument::Extension, Class::Gpebo) => {
                 vec![column(Some("xi"), &self.chi), Part { access: Some("psi"), columns: self.psi.clone() }]
@@ -240,6 +262,11 @@ impl<'a> Definitions<'a> {
     /// The symbols that an argument holds, column by column.
     pub(super) fn symbols(&self, argument: Argument) -> Vec<Symbol> {
         self.parts(argument).into_iter().flat_map(|part| part.columns.concat()).collect()
+    }
+
+    /// Tests whether the unknowns are functions of theta that a step computes.
+    pub(super) fn has_functions(&self) -> bool {
+        !self.theta.is_empty()
     }
 
     /// Tests whether equations hold at every instant beside those of rates.

@@ -37,8 +37,8 @@ pub(super) fn expression(syntax: &Expr, indent: usize, column: usize, behind: us
         }
         Expr::Call(call) => {
             let function = flat(&call.func)?;
-            if let [only @ Expr::Array(_)] = call.args.iter().collect::<Vec<_>>()[..] {
-                // A single array opens on the line of the call.
+            if let [only @ (Expr::Array(_) | Expr::Struct(_))] = call.args.iter().collect::<Vec<_>>()[..] {
+                // A single array or structure opens on the line of the call.
                 return Ok(format!("{function}({})", broken(only, indent)?));
             }
             let page = each(&mut call.args.iter())?;

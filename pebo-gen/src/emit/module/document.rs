@@ -8,7 +8,7 @@ use super::abbreviation::Abbreviations;
 use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
-use crate::emit::definition::{Argument, Definitions, Group, INSTANTS, PERIODS, VELOCITY};
+use crate::emit::definition::{Argument, Definitions, ETA, FUNCTIONS, Group, INSTANTS, PERIODS, SLOPES, VELOCITY};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
 use pebo_design::plant::Plant;
@@ -152,6 +152,8 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
         match definition.name {
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if is_linear(arena, definitions) => {}
+            // The laws have the values, and with them their derivatives.
+            ETA | SLOPES => {}
             "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
             _ => blocks.extend(formulas::of((arena, abbreviations), definitions, definition, MODULE)),
         }
@@ -378,6 +380,10 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
              written by columns."
         }
         "theta" => "The constant `theta`, from the unknowns of the regression.",
+        FUNCTIONS => {
+            "The unknowns `eta` of the regression as functions of `theta`, among whose values an observer keeps its \
+             estimate, and their derivatives, written by columns: one for each component of `theta`."
+        }
         PERIODS => "The periods of the outputs that are angles, 0 for the others: the observer counts their turns.",
         VELOCITY => {
             "The velocities `M^-1 p`, which are the rates of the outputs, from the coordinates `z`. An observer has its \

@@ -10,7 +10,7 @@ use quote::quote;
 
 use super::{Module, Scope, doc, document, permission};
 use crate::emit::definition::tasks::varying;
-use crate::emit::definition::{Argument, Definition, Group, Part, Shape, VELOCITY};
+use crate::emit::definition::{Argument, Definition, FUNCTIONS, Group, Part, Shape, VELOCITY};
 use crate::emit::expression::{Piece, ident};
 use pebo_cas::Symbol;
 use pebo_design::program::{Operand, Program};
@@ -117,6 +117,10 @@ impl Module<'_> {
             "regression" | "primitive" => {
                 (quote!(Sides<#scalar, NR, NE>), quote!(Sides { known: #first, factor: #second }))
             }
+            FUNCTIONS => (
+                quote!(Option<Functions<#scalar, NE, NZ>>),
+                quote!(Some(Functions { values: #first, slopes: #second })),
+            ),
             _ => {
                 let Shape::Vector(size) = group.members[0].shape else {
                     unreachable!("a group that is no structure is a vector");
@@ -134,7 +138,7 @@ fn size(argument: Argument) -> Option<&'static str> {
         Argument::Extension => None,
         Argument::Y => Some("NY"),
         Argument::U => Some("NU"),
-        Argument::Z => Some("NZ"),
+        Argument::Z | Argument::Theta => Some("NZ"),
         Argument::Eta => Some("NE"),
     }
 }

@@ -168,7 +168,7 @@ impl Module<'_> {
         let mut names = Names::default();
         let arena = &self.plant.arena;
         let parameters = self.plant.parameters.iter().map(|parameter| parameter.symbol);
-        let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta];
+        let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta, Argument::Theta];
         let arguments = arguments.into_iter().flat_map(|argument| self.definitions.symbols(argument));
         let symbols: Vec<Symbol> = parameters.chain(arguments).collect();
         let written: Vec<String> = symbols.iter().map(|symbol| arena.name(*symbol)).collect();
@@ -198,6 +198,7 @@ impl Module<'_> {
         let mut names = vec!["Flow", "Gradient", self.extension(), "Model", "Regression", "Sides"];
         names.extend(self.programs().any(expression::calls).then_some("Real"));
         names.extend((self.definitions.class == Class::Pebo).then_some("Extension"));
+        names.extend(self.definitions.has_functions().then_some("Functions"));
         names.extend(self.rebase.then_some("Rebase"));
         names.extend((!self.asked.is_empty()).then_some("Fault"));
         names.extend(self.constructors_use());

@@ -66,6 +66,7 @@ impl Module<'_> {
             (Argument::Y, _) => quote!(y: Y),
             (Argument::U, _) => quote!(u: U),
             (Argument::Eta, _) => quote!(eta: [#scalar; NE]),
+            (Argument::Theta, _) => quote!(theta: [#scalar; NZ]),
         });
         let returned = match (definition.name, definition.shape) {
             ("phi_left", _) => quote!(X),

@@ -230,6 +230,11 @@ fn function(arena: &Arena, call: &syn::ExprCall, scope: &Scope) -> Result<Value,
         return Err(unknown());
     };
     let segments: Vec<String> = path.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+    if let ([name], [argument]) = (segments.as_slice(), call.args.iter().collect::<Vec<_>>().as_slice())
+        && name == "Some"
+    {
+        return expression(arena, argument, scope);
+    }
     let [owner, name] = segments.as_slice() else {
         return Err(unknown());
     };

@@ -2,6 +2,7 @@
 
 mod angle;
 mod drift;
+mod functions;
 mod kinds;
 pub(crate) mod rebasing;
 mod sampling;

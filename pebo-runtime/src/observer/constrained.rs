@@ -1,0 +1,82 @@
+//! Keeps the estimate of functions of theta among their values.
+//!
+//! In: an estimate of `eta` with its information matrix, and a model whose `eta` is a function of `theta`. Out: the value
+//! of that function which is nearest in the norm of the information, found by Gauss and Newton's method from
+//! `theta(eta)`; and the covariance that `eta` has as a function of `theta`.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::numeric::linear::solve;
+use crate::numeric::sum::all_finite;
+use crate::{Information, Model, Real};
+
+/// The number of iterations: the estimate was a value of the function one sample before, so that few are needed, and a
+/// step takes a bounded time.
+const ITERATIONS: usize = 3;
+
+/// The greatest distance, in standard deviations. The true value, which is among these, is farther away with ten
+/// components in one case of ten thousand: beyond it the search has not found the true one, or the covariance is not
+/// true, and the estimate stays as it is.
+const MOST_DEVIATIONS: f64 = 6.0;
+
+/// The value of the functions of theta that is nearest to an estimate; none where there are no such functions, or it is
+/// not found.
+pub(super) fn nearest<
+    M,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+>(
+    model: &M,
+    eta: &SVector<M::Scalar, NE>,
+    information: &Information<M::Scalar, NE>,
+) -> Option<SVector<M::Scalar, NE>>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+{
+    let mut theta = model.theta(eta);
+    let mut at = model.functions(&theta)?;
+    let mut misfit = information.misfit(&(at.values - eta));
+    for _ in 0..ITERATIONS {
+        let Ok(step) = information.along(&(at.values - eta), &at.slopes).solve() else { break };
+        let next = theta + step;
+        let Some(there) = model.functions(&next) else { break };
+        let left = information.misfit(&(there.values - eta));
+        // False for a NaN too.
+        let is_nearer = left < misfit;
+        if !is_nearer {
+            break;
+        }
+        (theta, at, misfit) = (next, there, left);
+    }
+    let most: M::Scalar = Real::from_f64(MOST_DEVIATIONS * MOST_DEVIATIONS);
+    (misfit <= most && all_finite(&at.values)).then_some(at.values)
+}
+
+/// A root of the covariance that functions of theta with these slopes have, if without that dependence it has the given
+/// one: `J (J^T P^-1 J)^-1 J^T`. None where theta is not known.
+pub(super) fn covariance_root<S: Real, const NE: usize, const NZ: usize>(
+    root: &SMatrix<S, NE, NE>,
+    slopes: &SMatrix<S, NE, NZ>,
+) -> Option<SMatrix<S, NE, NE>> {
+    let one = S::one();
+    let in_deviations = solve(*root, *slopes).ok()?;
+    let independent = Information::from_variances(&SVector::<S, NE>::repeat(one)).ok()?;
+    let mut of_theta = independent.along(&SVector::zeros(), &in_deviations);
+    for (j, column) in slopes.column_iter().enumerate() {
+        // A component that no function depends on: any variance will do.
+        if column.iter().all(|&slope| slope == S::zero()) {
+            let mut unit = SVector::<S, NZ>::zeros();
+            unit[j] = one;
+            of_theta.absorb(&unit, S::zero(), one);
+        }
+    }
+    let product = slopes * of_theta.covariance_root()?;
+    // There are at least as many functions as components of theta.
+    let mut padded = SMatrix::<S, NE, NE>::zeros();
+    product.column_iter().take(NE).enumerate().for_each(|(j, column)| padded.set_column(j, &column));
+    all_finite(&padded).then_some(padded)
+}

@@ -1,0 +1,152 @@
+//! Unknowns that are functions of theta: the estimate remains among their values.
+
+use pebo_runtime::nalgebra::{SMatrix, SVector};
+use pebo_runtime::{
+    Flow, Functions, Gradient, Integrator, LeastSquares, Model, Observer, Regression, SampledRegression, Sides,
+};
+
+type Scalar = SVector<f64, 1>;
+type Pair = SVector<f64, 2>;
+type Triple = SVector<f64, 3>;
+
+/// `y = a + s(t) a b` with the constants a and b, `eta = (a, b, a b)`: samples say nothing of b but by the product.
+#[derive(Clone, Copy, Debug)]
+struct Product {
+    is_constrained: bool,
+}
+
+impl Model<2, 1, 1, 2, 1, 3> for Product {
+    type Scalar = f64;
+    type Extension = Integrator<f64, 2>;
+    type X = Pair;
+    type Y = Scalar;
+    type U = Scalar;
+    type Terms = Scalar;
+    const REGRESSION: Regression = Regression::Static;
+
+    fn terms(&self, y: &Scalar) -> Scalar {
+        *y
+    }
+    fn flow(&self, _y: &Scalar, _u: &Scalar) -> Flow<f64, 2> {
+        Flow::plain(Pair::zeros())
+    }
+    fn regression(&self, _: &Self::Extension, y: &Scalar, u: &Scalar) -> Sides<f64, 1, 3> {
+        Sides { known: *y, factor: SMatrix::from([[1.0], [0.0], [u[0]]]) }
+    }
+    fn theta(&self, eta: &Triple) -> Pair {
+        Pair::new(eta[0], eta[1])
+    }
+    fn functions(&self, theta: &Pair) -> Option<Functions<f64, 3, 2>> {
+        let &[[a, b]] = &theta.data.0;
+        let slopes = SMatrix::from([[1.0, 0.0, b], [0.0, 1.0, a]]);
+        self.is_constrained.then(|| Functions { values: Triple::new(a, b, a * b), slopes })
+    }
+    fn recover(&self, z: &Pair, _y: &Scalar) -> Pair {
+        *z
+    }
+}
+
+const NOISE: f64 = 0.01;
+
+/// The samples: an input between -1 and 1, and the output with an error that has no mean over a period.
+fn samples() -> impl Iterator<Item = (Scalar, Scalar)> {
+    (0..400).map(|k| {
+        let (u, sign) = ((0.1 * f64::from(k)).sin(), if k % 2 == 0 { 1.0 } else { -1.0 });
+        (Scalar::new(2.0 + u * 2.0 * 0.7 + sign * NOISE), Scalar::new(u))
+    })
+}
+
+fn squares(
+    is_constrained: bool,
+) -> Observer<Product, LeastSquares<f64, 3>, 2, 1, 1, 2, 1, 3, SampledRegression<f64, 1, 3>> {
+    let estimator = LeastSquares::diagonal(&Triple::new(4.0, 4.0, 16.0), 0.0).unwrap();
+    let regression = SampledRegression::new(&Scalar::new(NOISE * 0.1_f64.sqrt())).unwrap();
+    Observer::with_regression(Product { is_constrained }, estimator, regression, Pair::zeros()).unwrap()
+}
+
+#[test]
+fn a_factor_is_known_by_its_product() {
+    let [mut with, mut without] = [true, false].map(squares);
+    for (y, u) in samples() {
+        with.step(y, u, 0.1).unwrap();
+        without.step(y, u, 0.1).unwrap();
+    }
+    let [found, blind] = [with.theta(), without.theta()];
+    // The error of the mean of 400 samples is a twentieth of the noise.
+    assert!((found - Pair::new(2.0, 0.7)).amax() < 5.0 * NOISE / 20.0, "{found}");
+    assert!(blind[1].abs() < 1e-9, "{blind}");
+    // Functions and theta agree.
+    assert!((with.eta() - Triple::new(found[0], found[1], found[0] * found[1])).amax() < 1e-12);
+    let [known, unknown] = [with.standard_error().unwrap(), without.standard_error().unwrap()];
+    assert!(known.amax() < 0.01 && unknown[1] > 1.9, "{known} {unknown}");
+}
+
+#[test]
+fn an_estimator_without_information_is_left_alone() {
+    let observer = |is_constrained| {
+        let gradient = Gradient::diagonal(&Triple::repeat(2.0)).unwrap();
+        let regression = SampledRegression::<f64, 1, 3>::new(&Scalar::new(1.0)).unwrap();
+        Observer::with_regression(Product { is_constrained }, gradient, regression, Pair::zeros()).unwrap()
+    };
+    let (mut with, mut without) = (observer(true), observer(false));
+    for (y, u) in samples() {
+        assert_eq!(with.step(y, u, 0.1).unwrap(), without.step(y, u, 0.1).unwrap());
+    }
+}
+
+/// `y = a + s(t) a^2`, with `eta = (a, a^2)`.
+#[derive(Clone, Copy, Debug)]
+struct Square {
+    is_constrained: bool,
+}
+
+impl Model<1, 1, 1, 1, 1, 2> for Square {
+    type Scalar = f64;
+    type Extension = Integrator<f64, 1>;
+    type X = Scalar;
+    type Y = Scalar;
+    type U = Scalar;
+    type Terms = Scalar;
+    const REGRESSION: Regression = Regression::Static;
+
+    fn terms(&self, y: &Scalar) -> Scalar {
+        *y
+    }
+    fn flow(&self, _y: &Scalar, _u: &Scalar) -> Flow<f64, 1> {
+        Flow::plain(Scalar::zeros())
+    }
+    fn regression(&self, _: &Self::Extension, y: &Scalar, u: &Scalar) -> Sides<f64, 1, 2> {
+        Sides { known: *y, factor: SMatrix::from([[1.0], [u[0]]]) }
+    }
+    fn theta(&self, eta: &Pair) -> Scalar {
+        Scalar::new(eta[0])
+    }
+    fn functions(&self, theta: &Scalar) -> Option<Functions<f64, 2, 1>> {
+        let a = theta[0];
+        self.is_constrained.then(|| Functions { values: Pair::new(a, a * a), slopes: SMatrix::from([[1.0, 2.0 * a]]) })
+    }
+    fn recover(&self, z: &Scalar, _y: &Scalar) -> Scalar {
+        *z
+    }
+}
+
+/// The true value is among those of the functions: data that contradict all of these are no reason to trust one.
+#[test]
+fn an_estimate_that_is_far_from_all_values_stays() {
+    let observer = |is_constrained| {
+        let estimator = LeastSquares::diagonal(&Pair::new(4.0, 16.0), 0.0).unwrap();
+        let regression = SampledRegression::<f64, 1, 2>::new(&Scalar::new(NOISE * 0.1_f64.sqrt())).unwrap();
+        Observer::with_regression(Square { is_constrained }, estimator, regression, Scalar::zeros()).unwrap()
+    };
+    let after = |is_constrained, square: f64| {
+        let mut observer = observer(is_constrained);
+        for (_, u) in samples() {
+            observer.step(Scalar::new(1.0) + u * square, u, 0.1).unwrap();
+        }
+        observer.eta()
+    };
+    assert!((after(false, -3.0) - Pair::new(1.0, -3.0)).amax() < 1e-3);
+    assert!((after(true, -3.0) - Pair::new(1.0, -3.0)).amax() < 0.1, "{}", after(true, -3.0));
+    let found = after(true, 1.0);
+    assert!((found - Pair::new(1.0, 1.0)).amax() < 1e-3, "{found}");
+}
