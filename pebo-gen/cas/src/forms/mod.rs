@@ -3,6 +3,7 @@
 mod as_sign;
 mod hyperbolic;
 mod near_zero;
+pub(crate) mod number_powers;
 pub mod opaque;
 pub mod oriented;
 pub mod scaled;

@@ -2,7 +2,7 @@
 //!
 //! In: nodes. Out: handles. After a node is entered, an equal node yields the same handle.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::hash::BuildHasher;
 
@@ -10,6 +10,7 @@ use hashbrown::HashTable;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::expr::{Expr, Node, Symbol};
+use super::function::Function;
 use crate::number::interval::Interval;
 use crate::number::notation::Notation;
 use crate::{Budget, Rational};
@@ -56,6 +57,8 @@ pub struct Arena {
     solutions: RefCell<FxHashMap<Vec<Expr>, Option<Vec<Expr>>>>,
     /// Expressions in them that are zero, as the constants satisfy equations.
     satisfied: RefCell<FxHashSet<Expr>>,
+    /// The number of logarithms of numbers.
+    number_logarithms: Cell<usize>,
     notation: Notation,
 }
 
@@ -78,6 +81,7 @@ impl Arena {
             located: RefCell::default(),
             solutions: RefCell::default(),
             satisfied: RefCell::default(),
+            number_logarithms: Cell::default(),
             notation: Notation::default(),
         }
     }
@@ -106,9 +110,19 @@ impl Arena {
             return found;
         }
         let expr = Expr(u32::try_from(nodes.len()).expect("fewer than 2^32 expressions"));
+        if let Node::Call(Function::Log, argument) = &node
+            && matches!(nodes[argument[0].0 as usize], Node::Number(_))
+        {
+            self.number_logarithms.set(self.number_logarithms.get() + 1);
+        }
         nodes.push(node);
         table.insert_unique(hash, expr, |e| hash_of(&nodes[e.0 as usize]));
         expr
+    }
+
+    /// The number of logarithms of numbers among the nodes.
+    pub(crate) fn number_logarithms(&self) -> usize {
+        self.number_logarithms.get()
     }
 
     /// The symbol that an author calls by this name.

@@ -6,8 +6,10 @@ use rustc_hash::FxHashMap;
 
 use super::arrangement::{Factor, Summand, is_root, quotient, summands};
 use crate::Rational;
+use crate::forms::number_powers::{as_power, printed_parts};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum};
+use crate::graph::function::Function;
 use crate::number::notation::whole;
 
 /// The length up to which a formula is printed, all repetitions included.
@@ -57,7 +59,7 @@ impl Arena {
     pub fn print(&self, expr: Expr) -> String {
         let mut known: FxHashMap<Expr, Text> = FxHashMap::default();
         let mut written = 0;
-        for e in self.postorder(&[expr]) {
+        for e in printed_parts(self, expr) {
             let text = match self.node(e) {
                 Node::Number(value) => self.print_number(&value),
                 Node::Pi => Text::new("pi", Binding::Atom),
@@ -65,8 +67,10 @@ impl Arena {
                 Node::Sum(sum) => self.print_sum(&sum, &known),
                 Node::Product(product) => self.print_product(&product, &known),
                 Node::Call(function, arguments) => {
-                    let inner: Vec<&str> = arguments.iter().map(|a| known[a].text.as_str()).collect();
-                    Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
+                    self.print_power(function, arguments[0], &known).unwrap_or_else(|| {
+                        let inner: Vec<&str> = arguments.iter().map(|a| known[a].text.as_str()).collect();
+                        Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
+                    })
                 }
             };
             written += text.text.len();
@@ -76,6 +80,14 @@ impl Arena {
             known.insert(e, text);
         }
         known.remove(&expr).map(|t| t.text).unwrap_or_default()
+    }
+
+    /// A power of a number, if the function is one.
+    fn print_power(&self, function: Function, argument: Expr, known: &FxHashMap<Expr, Text>) -> Option<Text> {
+        let (number, exponent) = as_power(self, argument).filter(|_| function == Function::Exp)?;
+        let base = self.print_number(&number).within(Binding::Atom);
+        let exponent = known[&exponent].within(Binding::Atom);
+        Some(Text::new(format!("{base}^{exponent}"), Binding::Power))
     }
 
     fn print_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Text>) -> Text {

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::forms::number_powers::joined;
 use crate::graph::expr::Expr;
 use crate::poly::{Monomial, Poly, TooLarge, steps};
 use crate::{Integer, Rational};
@@ -32,7 +33,13 @@ impl Field<'_> {
         let mut factors = powers(&num, 1);
         factors.extend(powers(&den, -1));
         factors.extend(sines);
-        self.arena.multiply(&coefficient, factors)
+        self.joined(self.arena.multiply(&coefficient, factors))
+    }
+
+    /// The expression with powers and logarithms of one number in place of several.
+    fn joined(&self, expr: Expr) -> Expr {
+        // Two of them have something to join.
+        if self.arena.number_logarithms() < 2 { expr } else { joined(self.arena, expr) }
     }
 
     /// The fraction as a product of the factors found: `(1 - a)*(1 - b)` rather than its terms.
@@ -52,7 +59,7 @@ impl Field<'_> {
                     powers.extend(shown.into_iter().map(|(base, power)| (base, &power * &times)));
                 }
             }
-            Ok(self.arena.multiply(&coefficient, powers))
+            Ok(self.joined(self.arena.multiply(&coefficient, powers)))
         };
         product().unwrap_or_else(|_| self.show(fraction))
     }
@@ -110,14 +117,14 @@ impl Field<'_> {
         let rest: Terms = den.terms().map(|(m, c)| (divided(&m, &own), c.clone())).collect();
         let rest = self.grouped(rest, &|variable| self.kernel(variable));
         let scale = Rational::new(Integer::ONE, denominator).unwrap_or(Rational::ONE);
-        self.arena.sum(groups.into_iter().map(|(left, terms)| {
+        self.joined(self.arena.sum(groups.into_iter().map(|(left, terms)| {
             let (above, terms) = without_content(terms);
             let mut factors: Vec<(Expr, Rational)> =
                 left.iter().map(|&(v, e)| (self.kernel(v), Rational::from(-i64::from(e)))).collect();
             factors.push((self.grouped(terms, &|variable| self.kernel(variable)), Rational::ONE));
             factors.push((rest, Rational::from(-1)));
             self.arena.multiply(&(&scale * &Rational::from(above)), factors)
-        }))
+        })))
     }
 
     /// A polynomial without its factors `cos(q)^2 - 1`, and these, to a common power, as `-sin(q)^2`: no digits are

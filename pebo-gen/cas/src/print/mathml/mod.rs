@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 use super::arrangement::{Factor, Summand, is_root, quotient, summands};
 use super::letter::{greek, parts};
 use crate::Rational;
+use crate::forms::number_powers::{as_power, printed_parts};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum, Symbol};
 use crate::graph::function::Function;
@@ -102,7 +103,7 @@ impl Arena {
         let mut known: FxHashMap<Expr, Markup> = FxHashMap::default();
         let mut written = 0;
         let replaced: Vec<Expr> = shown.values().copied().collect();
-        for e in self.postorder(&replaced) {
+        for e in replaced.iter().flat_map(|e| printed_parts(self, *e)) {
             known.insert(e, self.typeset(e, &known));
             written += known[&e].elements.len();
             if written > MOST_CHARACTERS {
@@ -111,7 +112,7 @@ impl Arena {
         }
         let replaced: BTreeMap<Symbol, Markup> = shown.iter().map(|(symbol, e)| (*symbol, known[e].clone())).collect();
         known.clear();
-        for e in self.postorder(&[expr]) {
+        for e in printed_parts(self, expr) {
             let row = match self.as_symbol(e).and_then(|symbol| replaced.get(&symbol)) {
                 Some(row) => row.clone(),
                 None => self.typeset(e, &known),
@@ -152,11 +153,19 @@ impl Arena {
             Node::Symbol(symbol) => named(&self.name(symbol), |letter| letter),
             Node::Sum(sum) => self.typeset_sum(&sum, known),
             Node::Product(product) => self.typeset_product(&product, known),
-            Node::Call(function, arguments) => {
+            Node::Call(function, arguments) => self.typeset_power(function, arguments[0], known).unwrap_or_else(|| {
                 let arguments: Vec<&str> = arguments.iter().map(|a| known[a].elements.as_str()).collect();
                 call(function, &arguments.join("<mo>,</mo>"))
-            }
+            }),
         }
+    }
+
+    /// A power of a number, if the function is one.
+    fn typeset_power(&self, function: Function, argument: Expr, known: &FxHashMap<Expr, Markup>) -> Option<Markup> {
+        let (number, exponent) = as_power(self, argument).filter(|_| function == Function::Exp)?;
+        let base = self.typeset_number(&number).within(Binding::Atom);
+        let power = format!("<msup>{}{}</msup>", base.element(), known[&exponent].element());
+        Some(Markup::new(power, Binding::Factor, base.ends))
     }
 
     fn typeset_sum(&self, sum: &Sum, known: &FxHashMap<Expr, Markup>) -> Markup {
