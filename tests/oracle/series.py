@@ -5,6 +5,7 @@ A cell is where all arguments of `abs`, `sign`, `max`, `min` and `sat` keep thei
 
 import re
 from fractions import Fraction
+from math import isqrt
 
 ORDER = 4
 CELL = []  # The signs that were asked for since it was last cleared.
@@ -66,8 +67,16 @@ total = lambda terms: sum(terms, number(0))
 zero = lambda series: not any(series.terms[: ORDER - 2])
 larger = lambda a, b: a if (a - b).positive() else b
 smaller = lambda a, b: b if (a - b).positive() else a
+def root(a):
+    """Of a number, to 200 digits: an affine expression of it that is zero at rational points is zero with these too."""
+    inside = a.terms[0] * 10**400
+    if any(a.terms[1:]) or inside < 0:
+        raise NoValue
+    return number(Fraction(isqrt(inside.numerator // inside.denominator), 10**200))
+
+
 FUNCTIONS = {
-    "number": number, "max": larger, "min": smaller, "sign": lambda a: number(a.sign()),
+    "sqrt": root, "number": number, "max": larger, "min": smaller, "sign": lambda a: number(a.sign()),
     "abs": lambda a: a if a.positive() else -a, "sat": lambda a: larger(number(-1), smaller(a, number(1))),
 }
 COMPILED = {}

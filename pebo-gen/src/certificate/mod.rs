@@ -226,11 +226,8 @@ impl Conditions {
         let arena = &plant.arena;
         let at_value = |symbol: Symbol, value: Expr| vec![arena.sub(arena.of_symbol(symbol), value)];
         match condition {
-            TrajectoryCondition::Equilibrium(zeros) => {
+            TrajectoryCondition::Equilibrium(zeros) | TrajectoryCondition::UndecidedAtRest(zeros) => {
                 Self { zero: zeros.clone(), rest: Some(true), ..Self::default() }
-            }
-            TrajectoryCondition::UndecidedAtRest(zero) => {
-                Self { zero: vec![*zero], rest: Some(true), ..Self::default() }
             }
             TrajectoryCondition::Constant(inputs) => Self { constant: inputs.clone(), ..Self::default() },
             TrajectoryCondition::Value(input, value) => Self { zero: at_value(*input, *value), ..Self::default() },

@@ -352,7 +352,7 @@ pub enum TrajectoryCondition {
     /// This is zero at all times, and rows with all their derivatives may be of a lower rank: undecided.
     Undecided(Expr),
     /// At an equilibrium this is zero: likewise.
-    UndecidedAtRest(Expr),
+    UndecidedAtRest(Vec<Expr>),
     /// The cell on which these keep their signs: the regressor is non-smooth where one changes.
     Cell(Vec<(Expr, Side)>),
     /// These keep their signs, and the other holds.

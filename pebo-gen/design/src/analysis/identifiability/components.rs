@@ -3,10 +3,12 @@
 //! In: the decision on a domain whose equations are no products. Out: the decision on all components, where it is the
 //! same on each: `(a^2 + b^2)*(a^2 + b^2 - 1) = 0` is a circle and the origin, and a plant remains on one of them.
 
+use std::collections::BTreeSet;
+
 use crate::plant::Plant;
 use crate::source::Diagnostic;
-use pebo_cas::Domain;
 use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr};
 
 use super::divided::Formulas;
 use crate::analysis::design::{Claim, Excitation, Identifiability, Verdict};
@@ -19,13 +21,36 @@ pub(super) fn on_components(
     decide: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Result<Claim<Identifiability>, Obstacle>,
 ) -> Option<Claim<Identifiability>> {
     let components = domain.components(&plant.arena, &[], &formulas.identities, &plant.elimination_order()).ok()?;
-    let mut claims = components.iter().map(|there| decide(&there.domain, &mut Vec::new()).ok());
-    let mut common = claims.next()??;
+    let equations: Vec<Vec<Expr>> =
+        components.iter().map(|there| there.domain.manifold.reduced(&plant.arena)).collect();
+    let mut claims = Vec::new();
+    for there in &components {
+        claims.push(decide(&there.domain, &mut Vec::new()).ok()?);
+    }
+    let singular = |claim: &Claim<Identifiability>| claim.result.as_ref().map(|result| result.singular_where.clone());
+    if claims.iter().any(|claim| singular(claim) != singular(&claims[0])) {
+        for (claim, own) in claims.iter_mut().zip(&equations) {
+            let is_own = |equation: &&Expr| !equations.iter().all(|others| others.contains(*equation));
+            let own: Vec<Expr> = own.iter().filter(is_own).copied().collect();
+            claim.result.iter_mut().for_each(|result| within(plant, &own, &mut result.singular_where));
+        }
+    }
+    let mut claims = claims.into_iter();
+    let mut common = claims.next()?;
     for claim in claims {
-        join(plant, &mut common, claim?)?;
+        join(plant, &mut common, claim)?;
     }
     let is_identified = common.result.as_ref().is_some_and(|result| result.kind != Excitation::Never);
     (common.verdict == Verdict::Proved && is_identified).then_some(common)
+}
+
+/// Makes conditions on signals those on the component with these equations.
+fn within(plant: &Plant, equations: &[Expr], conditions: &mut [String]) {
+    for condition in conditions {
+        let own = equations.iter().map(|equation| format!("{} = 0", plant.arena.print(*equation)));
+        let all: BTreeSet<String> = own.chain([condition.clone()]).collect();
+        *condition = all.into_iter().collect::<Vec<_>>().join(" and ");
+    }
 }
 
 /// Adds the conditions of another component; none if its decision is another.

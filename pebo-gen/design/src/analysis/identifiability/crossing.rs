@@ -29,18 +29,25 @@ pub(super) struct CellRows<'a> {
     pub(super) hidden: Vec<Vec<Expr>>,
 }
 
+impl CellRows<'_> {
+    /// Tests whether the cell identifies all unknowns by itself.
+    pub(super) fn is_identified(&self) -> bool {
+        self.hidden.is_empty()
+    }
+}
+
 /// Tests whether every cell identifies all unknowns with another into which trajectories pass.
 pub(super) fn all_identified(
     plant: &Plant,
     cascade: &Cascade,
     varies: impl Fn(Expr) -> bool,
-    cells: &[CellRows<'_>],
+    cells: &[&CellRows<'_>],
     unknowns: usize,
 ) -> Result<bool, Obstacle> {
     let mut identified = along_signals(plant, &varies, cells, unknowns)?;
     for first in 0..cells.len() {
         for second in first + 1..cells.len() {
-            let pair = [&cells[first], &cells[second]];
+            let pair = [cells[first], cells[second]];
             let is_open = !identified[first] || !identified[second];
             if is_open && passes(plant, cascade, &varies, pair, unknowns)? {
                 identified[first] = true;
@@ -57,7 +64,7 @@ pub(super) fn all_identified(
 fn along_signals(
     plant: &Plant,
     varies: &impl Fn(Expr) -> bool,
-    cells: &[CellRows<'_>],
+    cells: &[&CellRows<'_>],
     unknowns: usize,
 ) -> Result<Vec<bool>, Obstacle> {
     let arena = &plant.arena;
@@ -70,7 +77,8 @@ fn along_signals(
             sides.copied().collect()
         };
         for (index, cell) in cells.iter().enumerate() {
-            let line: Vec<&CellRows<'_>> = cells.iter().filter(|other| others(other) == others(cell)).collect();
+            let line: Vec<&CellRows<'_>> =
+                cells.iter().copied().filter(|other| others(other) == others(cell)).collect();
             let hidden = line.iter().flat_map(|cell| cell.hidden.concat());
             if line.len() < 2 || hidden.into_iter().any(varies) || !is_connected(plant, signal, &line) {
                 continue;
@@ -185,7 +193,7 @@ fn jumps(arena: &Arena, inputs: &BTreeSet<Symbol>, pair: [&CellRows<'_>; 2], unk
 }
 
 /// Formulas as they are on a cell, which have values at its walls too.
-fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
+pub(super) fn as_on(arena: &Arena, domain: &Domain, exprs: &[Expr]) -> Result<Vec<Expr>, Obstacle> {
     let field = Field::on(arena, &domain.without_radicand_facts(arena, exprs), exprs)?;
     exprs.iter().map(|expr| Ok(field.show(&field.fraction(*expr)?))).collect()
 }

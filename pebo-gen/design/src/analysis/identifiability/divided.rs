@@ -13,7 +13,9 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use super::crossing::{CellRows, all_identified, driven};
+use super::flow::varies;
 use super::joined::Joined;
+use super::special;
 use super::trajectory::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 use crate::analysis::design::{
     BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, TrajectoryCondition, Verdict,
@@ -59,12 +61,6 @@ impl Formulas {
 /// The kind of excitation that a claim states.
 pub(super) fn kind(claim: &Claim<Identifiability>) -> Option<Excitation> {
     claim.result.as_ref().map(|result| result.kind)
-}
-
-/// Tests whether an expression depends on more than the parameters.
-pub(super) fn varies(plant: &Plant, expr: Expr) -> bool {
-    let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
-    plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
 }
 
 /// The decision on a domain from those on its cells.
@@ -120,6 +116,15 @@ pub(super) fn on_cells(
         }
         observed.push(CellRows { cell, rows, hidden });
     }
+    // A fundamental matrix varies with time: rows of two instants do not compare.
+    let entries: Vec<Expr> = observed.iter().flat_map(|cell| cell.rows.concat()).collect();
+    let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
+    // At the given values of the parameters some cells may have no points.
+    let given: Vec<&CellRows<'_>> = observed.iter().filter(|cell| cell.cell.domain.fixed == domain.fixed).collect();
+    let identify = |cells: &[&CellRows<'_>]| -> Result<bool, Obstacle> {
+        let combined = || all_identified(plant, cascade, varies, cells, regression.eta.len());
+        Ok(cells.iter().any(|cell| cell.is_identified()) || (!by_psi && combined()?))
+    };
     if joined.blind.len() == cells.len() {
         // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
         let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
@@ -127,19 +132,21 @@ pub(super) fn on_cells(
             found.extend(reported);
             return Ok(whole.claim);
         }
-        // A fundamental matrix varies with time: rows of two instants do not compare.
-        let entries: Vec<Expr> = observed.iter().flat_map(|cell| cell.rows.concat()).collect();
-        let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
         if by_psi {
             return Err(Obstacle::NoWitness);
         }
-        if !all_identified(plant, cascade, varies, &observed, regression.eta.len())? {
+        if !identify(&observed.iter().collect::<Vec<_>>())? {
             found.push(not_combined(plant, &cells));
             return Ok(Claim { verdict: Verdict::Undecided, result: None });
         }
         // Several cells identify the unknowns while the plant moves from one to the other.
         joined.by_itself = are_of_inputs(plant, &cells).then_some(false);
     }
+    if !identify(&given)? {
+        found.push(not_combined(plant, &given.iter().map(|cell| cell.cell.clone()).collect::<Vec<_>>()));
+        return Ok(Claim { verdict: Verdict::Undecided, result: None });
+    }
+    joined.exclude(special::of_cells(plant, domain, &observed, regression.eta.len()));
     joined.add_cells(plant, cells.len());
     joined.join_neighbours();
     for wall in on_walls(plant, domain, (cascade, regression), &cells, (joined.by_itself, &joined.blind)) {

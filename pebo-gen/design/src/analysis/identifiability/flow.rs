@@ -9,7 +9,7 @@ use crate::analysis::design::Cascade;
 use crate::plant::Plant;
 use pebo_cas::domain::zero::{decide, refute};
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Arena, Domain, Expr, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 /// The factors of the unknowns: `Phi_1`, less the rate of their factors under the derivative.
 pub(super) fn effective(
@@ -33,6 +33,8 @@ pub(super) fn effective(
 pub(super) struct Flow {
     rates: BTreeMap<Symbol, Expr>,
     free: Vec<Symbol>,
+    /// Where one of these is zero, an identity does not determine the rate that it was solved for.
+    pub(super) divisors: Vec<Expr>,
 }
 
 impl Flow {
@@ -72,20 +74,22 @@ impl Flow {
             *rate = domain.analytic(arena, &[arena.substitute(*rate, equal)])[0];
         }
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
-        let mut flow = Self { rates, free };
+        let mut flow = Self { rates, free, divisors: Vec::new() };
         flow.advance(plant);
         flow.bind(plant, domain)?;
         Ok(flow)
     }
 
-    /// Gives a signal without an equation the rate that an identity determines: it is not free then. Undecided bindings
-    /// are an error, since a rank could be found that no trajectory has.
+    /// Gives a signal without an equation the rate that an identity determines, everywhere if there is such a signal: it
+    /// is not free then. Undecided bindings are an error, since a rank could be found that no trajectory has.
     fn bind(&mut self, plant: &Plant, domain: &Domain) -> Result<(), Obstacle> {
         let arena = &plant.arena;
         for identity in &plant.identities {
             let moved = self.rate(arena, identity.expr);
             let slopes: Vec<Expr> = self.free.iter().map(|derivative| arena.derivative(moved, *derivative)).collect();
-            let bound = slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
+            let everywhere = slopes.iter().position(|slope| domain.grants(arena, (*slope, Relation::NonZero)));
+            let somewhere = || slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
+            let bound = everywhere.or_else(somewhere);
             let Some(index) = bound else {
                 if slopes.iter().all(|slope| decide(arena, *slope, domain).is_zero()) {
                     continue;
@@ -93,6 +97,7 @@ impl Flow {
                 return Err(Obstacle::Unsolved(arena.print(identity.expr)));
             };
             let slope = slopes[index];
+            self.divisors.extend(everywhere.is_none().then_some(slope));
             let derivative = self.free.remove(index);
             let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
             let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
@@ -142,4 +147,10 @@ pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> 
         .flat_map(|(i, row)| row.iter().enumerate().map(move |(j, symbol)| (*symbol, arena.number(i64::from(i == j)))))
         .collect();
     phi_1.iter().map(|row| arena.substitute_all(row, &identity)).collect()
+}
+
+/// Tests whether an expression depends on more than the parameters.
+pub(super) fn varies(plant: &Plant, expr: Expr) -> bool {
+    let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
+    plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
 }

@@ -10,6 +10,8 @@ use crate::plant::Plant;
 use pebo_cas::Expr;
 use pebo_cas::domain::cells::{Side, wall_between};
 
+use super::special::SpecialValues;
+
 /// Dividers with their signs.
 type Sides = Vec<(Expr, Side)>;
 
@@ -44,6 +46,14 @@ impl Joined {
             self.parameters &= parameters;
             self.within.push((sides(), blind.clone()));
         }
+    }
+
+    /// Adds conditions on the parameters.
+    pub(super) fn exclude(&mut self, special: SpecialValues) {
+        self.parameters &= special.complete;
+        let is_new = |combination: &Expr| !self.constants.contains(combination);
+        let new: Vec<Expr> = special.nonzero.into_iter().filter(is_new).collect();
+        self.constants.extend(new);
     }
 
     /// Adds the trajectories within so many cells to those on the whole domain: of all cells at once, where all have

@@ -17,6 +17,7 @@ mod joined;
 mod never;
 mod regimes;
 mod singular;
+mod special;
 
 use std::collections::BTreeSet;
 

@@ -11,7 +11,8 @@ use pebo_cas::Domain;
 use pebo_cas::domain::cells::{Cell, walls};
 use pebo_cas::tower::Obstacle;
 
-use super::divided::{AnalyticDecision, Formulas, kind, on_cells, varies};
+use super::divided::{AnalyticDecision, Formulas, kind, on_cells};
+use super::flow::varies;
 use super::joined::Joined;
 
 /// Answers on the whole domain; an obstacle where that is open.

@@ -108,8 +108,7 @@ impl TrajectoryProblem<'_> {
         Ok((found, all))
     }
 
-    /// Tests whether the condition of a listed trajectory holds throughout a family: with its borders, as rows are
-    /// continuous there.
+    /// Tests whether the condition of a listed trajectory holds throughout a family.
     pub(super) fn holds_in(&self, listed: &BlindTrajectory, family: &Family) -> bool {
         let arena = &self.plant.arena;
         let vanishes = |zero: Expr| decide(arena, zero, &family.domain).is_zero();
@@ -120,7 +119,7 @@ impl TrajectoryProblem<'_> {
             TrajectoryCondition::Undecided(zero) => vanishes(*zero),
             TrajectoryCondition::Zero(zeros) => zeros.iter().all(|zero| vanishes(*zero)),
             TrajectoryCondition::Cell(sides) => sides.iter().all(|(divider, side)| {
-                family.domain.implies(arena, side.positive(arena, *divider), Relation::NonNegative)
+                family.domain.implies(arena, side.positive(arena, *divider), Relation::Positive)
             }),
             _ => false,
         }

@@ -212,13 +212,15 @@ impl TrajectoryProblem<'_> {
     pub(super) fn constants(&self, stack: &[Vec<Expr>]) -> Result<(Vec<Expr>, bool), Obstacle> {
         let arena = &self.plant.arena;
         let own: BTreeSet<Symbol> = self.plant.parameters.iter().map(|p| p.symbol).collect();
-        if arena.symbols_of(&stack.concat()).is_disjoint(&own) {
+        let degenerate = self.degenerate_identities(&own)?;
+        if arena.symbols_of(&stack.concat()).is_disjoint(&own) && degenerate.is_empty() {
             return Ok((Vec::new(), true));
         }
         let zero_set = self.zero_set(self.domain, stack)?;
         let mut all = zero_set.all && !zero_set.joint;
         let mut lost = Vec::new();
-        for formula in zero_set.constants {
+        let others = degenerate.into_iter().filter(|formula| !zero_set.constants.contains(formula));
+        for formula in others.chain(zero_set.constants.iter().copied()) {
             let parameters = arena.symbols_of(&[formula]);
             let solved =
                 parameters.iter().find_map(|parameter| Some((*parameter, solved(arena, formula, *parameter)?)));
@@ -236,6 +238,25 @@ impl TrajectoryProblem<'_> {
             }
         }
         Ok((lost, all))
+    }
+
+    /// Combinations of the parameters at whose zeros an identity does not determine the rate that it is solved for: the
+    /// rows, which hold that rate, are others there.
+    fn degenerate_identities(&self, parameters: &BTreeSet<Symbol>) -> Result<Vec<Expr>, Obstacle> {
+        let (arena, domain) = (&self.plant.arena, self.domain);
+        let divisors = Flow::new(self.plant, domain, self.cascade)?.divisors;
+        let field = Field::over(arena, &domain.facts, &divisors)?;
+        let mut found = Vec::new();
+        for divisor in divisors {
+            for (factor, _) in field.fraction(divisor)?.numerator().factored(field.limit())?.factors {
+                let formula = field.show(&field.of_polynomial(&factor)?);
+                let is_constant = arena.symbols_of(&[formula]).is_subset(parameters);
+                if is_constant && !found.contains(&formula) && !domain.implies(arena, formula, Relation::NonZero) {
+                    found.push(formula);
+                }
+            }
+        }
+        Ok(found)
     }
 
     /// Tests whether further values of the parameters may hide unknowns that are identifiable with a restriction; none

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::analysis::design::{Cascade, Regression};
 use crate::analysis::identifiability::flow::{Flow, effective, without_psi};
 use crate::plant::Plant;
+use pebo_cas::domain::zero::decide;
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
@@ -61,7 +62,7 @@ impl TrajectoryProblem<'_> {
         };
         let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
         let mut latest = effective(arena, domain, &flow, &phi_1, &primitive_1);
-        let mut stack = without_psi(plant, &latest);
+        let mut stack = without_zeros(arena, domain, without_psi(plant, &latest));
         let mut rank = proved_rank(arena, domain, &stack, unknowns);
         let mut hidden = None;
         for _ in 1..unknowns {
@@ -70,7 +71,7 @@ impl TrajectoryProblem<'_> {
             }
             let before = stack.clone();
             latest = flow.rates(arena, &latest)?;
-            stack.extend(without_psi(plant, &latest));
+            stack.extend(without_zeros(arena, domain, without_psi(plant, &latest)));
             let next = proved_rank(arena, domain, &stack, unknowns);
             if next == rank {
                 self.check_size(&stack)?;
@@ -109,6 +110,19 @@ impl TrajectoryProblem<'_> {
         let held = self.plant.commanded().filter(|input| *input != symbol).collect();
         self.solve(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
     }
+}
+
+/// The rows with zero for entries that vanish on the domain: a normal form may not show that they follow from its
+/// equations.
+fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Vec<Vec<Expr>> {
+    if !domain.manifold.is_empty() {
+        for entry in rows.iter_mut().flatten() {
+            if decide(arena, *entry, domain).is_zero() {
+                *entry = arena.zero();
+            }
+        }
+    }
+    rows
 }
 
 /// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction

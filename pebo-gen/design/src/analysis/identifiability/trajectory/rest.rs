@@ -47,11 +47,12 @@ pub(in crate::analysis::identifiability) fn add(
     });
     trajectories.at_rest = rest.identified && trajectories.by_itself == Some(true);
     trajectories.everywhere &= rest.all || !rest.identified;
-    let of_undecided = |blind: &BlindTrajectory| match blind.condition {
-        TrajectoryCondition::Undecided(zero) | TrajectoryCondition::UndecidedAtRest(zero) => Some(zero),
+    let of_undecided = |blind: &BlindTrajectory| match &blind.condition {
+        TrajectoryCondition::Undecided(zero) => Some(vec![*zero]),
+        TrajectoryCondition::UndecidedAtRest(zeros) => Some(zeros.clone()),
         _ => None,
     };
-    let known: Vec<Expr> = trajectories.blind.iter().filter_map(of_undecided).collect();
+    let known: Vec<Vec<Expr>> = trajectories.blind.iter().filter_map(of_undecided).collect();
     // What holds throughout a cell holds at its equilibria.
     let cells: Vec<_> =
         trajectories.blind.iter().filter_map(|blind| Some((cell_of(blind)?.clone(), blind.hidden.len()))).collect();
@@ -124,7 +125,7 @@ impl TrajectoryProblem<'_> {
         rates.retain(|symbol, _| self.plant.time != Some(*symbol));
         let rates: Vec<Expr> = rates.into_values().collect();
         if self.plant.time.is_some_and(|time| arena.symbols_of(&rates).contains(&time)) {
-            return Err(Obstacle::NoPoint);
+            return Ok(Vec::new());
         }
         self.families_of(self.domain, &rates, held, |_, special| TrajectoryCondition::Equilibrium(special))
     }
@@ -176,7 +177,7 @@ impl TrajectoryProblem<'_> {
         let Ok(families) =
             self.families_of(&family.domain, &[zero], held, |_, special| TrajectoryCondition::Equilibrium(special))
         else {
-            rest.blind.push(BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(zero)));
+            rest.blind.push(BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(vec![zero])));
             return;
         };
         let at_zero = TrajectoryCondition::Equilibrium(vec![zero]);
@@ -205,13 +206,17 @@ impl TrajectoryProblem<'_> {
         })
     }
 
-    /// The directions that are unobservable with constant signals: at equilibria too, which could not be worked out.
+    /// The directions that are unobservable with constant signals: at equilibria too, which could not be worked out. If
+    /// there are none, equilibria are undecided.
     fn at_constant_signals(&self, held: &BTreeSet<Symbol>) -> Rest {
         let observed = self.solve(&Restriction { held: held.clone(), ..Restriction::default() });
-        let Ok(observed) = observed else { return Rest::default() };
-        let blind =
-            (!observed.hidden.is_empty()).then(|| self.blind(TrajectoryCondition::Equilibrium(Vec::new()), &observed));
-        Rest { identified: false, all: false, blind: blind.into_iter().collect() }
+        let blind = match observed {
+            Ok(observed) if !observed.hidden.is_empty() => {
+                self.blind(TrajectoryCondition::Equilibrium(Vec::new()), &observed)
+            }
+            _ => BlindTrajectory::undecided(TrajectoryCondition::UndecidedAtRest(Vec::new())),
+        };
+        Rest { identified: false, all: false, blind: vec![blind] }
     }
 }
 

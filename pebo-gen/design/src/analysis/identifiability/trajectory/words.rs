@@ -99,7 +99,7 @@ impl TrajectoryCondition {
     fn worded(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
-            TrajectoryCondition::Equilibrium(zeros) => {
+            TrajectoryCondition::Equilibrium(zeros) | TrajectoryCondition::UndecidedAtRest(zeros) => {
                 let zeros = zeros.iter().map(|zero| format!(" and `{} = 0`", arena.print(*zero)));
                 format!("the plant rests{}", zeros.collect::<String>())
             }
@@ -125,7 +125,6 @@ impl TrajectoryCondition {
                 zeros.iter().map(|zero| format!("`{} = 0`", arena.print(*zero))).collect::<Vec<_>>().join(" and ")
             }
             TrajectoryCondition::Undecided(zero) => format!("`{} = 0`", arena.print(*zero)),
-            TrajectoryCondition::UndecidedAtRest(zero) => format!("the plant rests and `{} = 0`", arena.print(*zero)),
             TrajectoryCondition::Cell(sides) => on_sides(plant, sides),
             TrajectoryCondition::Within(sides, condition) => {
                 format!("{} and {}", on_sides(plant, sides), condition.worded(plant))
