@@ -205,7 +205,9 @@ class Answer:
             here = {k: f"{float(names[k].terms[0]):.3f}" for k in [*plant.x, *plant.y, "v", "p"]}
             cells = [(parts, hidden) for parts, hidden in listed if is_cell(parts) and covers(parts, names)]
             self.looked[f"point, {found['kind']}" + (", in a listed cell" if cells else "")] += 1
-            if found["kind"] == "instant" and rank(rows[: len(plant.rows)]) < n:
+            # A rate of an output that multiplies an unknown says what the derivative of a relation does.
+            at_once = len(plant.rows) * (2 if self.said["regression"]["kind"] == "implicit" else 1)
+            if found["kind"] == "instant" and rank(rows[:at_once]) < n:
                 self.looked["cell that an equation lists, as it holds in all of it"] += excepted(names)
                 self.wrong += [] if excepted(names) else [f"UNSOUND: instant, but of a lower rank at {here}"]
             # A point that was drawn may lie on a wall that is listed.
@@ -233,7 +235,8 @@ class Answer:
             here = {k: f"{float(names[k].terms[0]):.3f}" for k in [*plant.x, *plant.y, "v", "p"]}
             if found["kind"] == "instant":
                 self.looked["point with a special input, instant"] += found["everywhere_else"] and bool(fixed)
-                if found["everywhere_else"] and rank(rows[: len(plant.rows)]) < n and not excepted(names):
+                at_once = len(plant.rows) * (2 if self.said["regression"]["kind"] == "implicit" else 1)
+                if found["everywhere_else"] and rank(rows[:at_once]) < n and not excepted(names):
                     self.wrong.append(f"UNSOUND: instant everywhere else, but of a lower rank at {here}")
             elif not fixed or found["blind_complete"]:
                 self.looked["point with a constant input" + (", a special one" if fixed else "")] += 1

@@ -11,7 +11,7 @@ use crate::source::Span;
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::forms::tidy::functions;
 use pebo_cas::graph::conditions::Regularity;
-use pebo_cas::{Arena, Domain, Expr, Rational, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
 use super::class::{Class, Proposal};
 use super::own::Own;
@@ -293,10 +293,23 @@ impl Plant {
     pub fn assumed(&self) -> Domain {
         let mut domain = assumed(&self.arena, &self.assumptions, &self.parameters);
         if !self.identities.is_empty() {
-            let equations = self.identities.iter().map(|identity| identity.expr).collect();
+            let equations =
+                self.identities.iter().map(|identity| self.without_excluded_factors(&domain, identity.expr));
+            let equations = equations.collect();
             domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, self.elimination_order());
         }
         domain
+    }
+
+    /// A product that is zero, without the factors that inequalities keep from zero.
+    fn without_excluded_factors(&self, domain: &Domain, equation: Expr) -> Expr {
+        let arena = &self.arena;
+        let Node::Product(product) = arena.node(equation) else { return equation };
+        let may_vanish = |(base, power): &&(Expr, Rational)| {
+            !power.is_negative() && !domain.implies(arena, *base, Relation::NonZero)
+        };
+        let left: Vec<(Expr, Rational)> = product.factors.iter().filter(may_vanish).cloned().collect();
+        if left.is_empty() { equation } else { arena.multiply(&Rational::ONE, left) }
     }
 }
 

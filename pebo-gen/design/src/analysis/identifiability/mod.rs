@@ -381,6 +381,8 @@ struct HiddenDirections {
 }
 
 fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {
+    let lacks_values = plant.parameters.iter().any(|parameter| parameter.value.is_none());
+    let values = if lacks_values { "give the parameters values, or " } else { "" };
     found.push(
         Diagnostic::error(
             Code::IdentifiabilityUndecided,
@@ -388,7 +390,7 @@ fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Clai
             "it could not be decided whether the unknowns can be identified",
         )
         .note(format!("obstacle: {obstacle}"))
-        .help("give the parameters values, or state signs under `assume`"),
+        .help(format!("{values}state signs under `assume`")),
     );
     Claim { verdict: Verdict::Undecided, result: None }
 }
