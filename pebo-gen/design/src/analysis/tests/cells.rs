@@ -88,7 +88,7 @@ fn equilibria_are_listed_too_where_inputs_have_to_vary() {
         cell,
         &[
             "while `I` is constant, only `z1`, `z2 - I*z3` is identified",
-            "while the plant rests, only `z2 - I*z3 - V*z1` is identified",
+            "while the plant rests, only `z2 - V*z1 - I*z3` is identified",
         ],
     );
 }
