@@ -79,6 +79,9 @@ fn forms_in_z(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
     let written = in_z(identity);
     if premises.cascade.lambda.is_some() || premises.left_inverse.is_none() {
         // Functions of theta are of no use here.
+        if !premises.is_hidden(written) && premises.row(written).is_some() {
+            return vec![written];
+        }
         return Some(linear()).filter(|forms| !forms.is_empty()).unwrap_or_else(|| vec![written]);
     }
     let everywhere = premises.domain.without_equations();

@@ -2,7 +2,6 @@
 //! derivative.
 
 use super::build;
-use super::equation::Equation;
 use super::pool::Pool;
 use super::selection::is_long;
 use super::trial::Trial;
@@ -25,7 +24,7 @@ pub(super) fn preferred(pool: &Pool<'_>, mut given: Trial) -> Trial {
         return given;
     }
     let equations = pool.differentiated();
-    if equations.is_empty() || !equations.iter().all(Equation::is_linear) {
+    if equations.is_empty() {
         return given;
     }
     if plant.relation_form.is_some() || !plant.identities.is_empty() {

@@ -23,78 +23,51 @@ use pebo_cas::{Expr, Rational, Symbol};
 /// Powers of the output in a that are looked for.
 const MOST_POWERS: i64 = 8;
 
-/// The equation for the rate of an output, known as a function of z too, whose multiplier and right side are affine in
-/// phi as formulas in x: the components of phi may depend on each other.
-pub(super) fn affine_equation(
-    premises: &Premises<'_>,
-    (output, in_z): (usize, Expr),
-) -> Result<Option<Equation>, Obstacle> {
-    let Some(rate) = premises.plant.y[output].rate else { return Ok(None) };
-    let of_states = divisor(premises, rate.expr, &premises.plant.hidden())?;
-    // A reciprocal of a state may be a component of phi.
-    let of_transform = factor(premises, in_z)?.map(|factor| premises.at_phi(factor));
-    for factor in of_states.into_iter().chain(of_transform) {
-        if let Some(equation) = affine_multiple(premises, output, factor)? {
-            return Ok(Some(equation));
-        }
-    }
-    Ok(None)
-}
-
-/// The equation for the rate of an output times a factor, where both are affine in phi.
-fn affine_multiple(premises: &Premises<'_>, output: usize, factor: Expr) -> Result<Option<Equation>, Obstacle> {
-    let (arena, plant, domain) = (premises.arena(), premises.plant, premises.domain);
-    let Some(row) = affine::of(plant, domain, factor)? else { return Ok(None) };
-    let moving = plant.y.iter().filter(|output| output.rate.is_some()).map(|output| output.symbol);
-    let known: BTreeSet<Symbol> = moving.chain(premises.constants()).collect();
-    if !arena.symbols_of(&row).is_subset(&known) {
-        return Ok(None);
-    }
-    let Some(primitive) = primitive(premises, premises.of_row(&row), plant.y[output].symbol) else { return Ok(None) };
-    let row = affine::of(plant, domain, rate_along(premises, primitive))?;
-    Ok(row.map(|row| Equation::new(premises, primitive, premises.of_row(&row), vec![output])))
-}
-
-/// The rate of a function of z and y along the plant.
-fn rate_along(premises: &Premises<'_>, of_z: Expr) -> Expr {
-    premises.arena().directional(premises.at_phi(of_z), &premises.plant.rates())
-}
-
-/// The equation for the rate of an output, one of these functions of z, y and u; none where it has no such form.
+/// The equation for the rate of an output times its denominator: with a right side that is affine in phi as a formula
+/// in x, since the components of phi may depend on each other, or else with one that is a function of z.
 pub(super) fn equation(
     premises: &Premises<'_>,
     (output, rate): (usize, Expr),
-    rates: &[(usize, Expr)],
+    in_z: Expr,
 ) -> Result<Option<Equation>, Obstacle> {
-    let (arena, plant, domain) = (premises.arena(), premises.plant, premises.domain);
-    let (y, unknown) = (plant.y[output].symbol, premises.unknown());
-    let Some(factor) = factor(premises, rate)? else { return Ok(None) };
-    // The unknown itself multiplies the rate; a nonlinear factor is not taken for such a regression.
-    if plant.z.iter().any(|z| arena.depends_on(arena.derivative(factor, *z), &unknown)) {
-        return Ok(None);
+    let of_states = divisor(premises, rate, &premises.plant.hidden())?;
+    // A reciprocal of a state may be a component of phi.
+    let of_z = factor(premises, in_z)?.map(|factor| premises.at_phi(factor));
+    let mut curved = None;
+    for factor in of_states.into_iter().chain(of_z) {
+        let Some(primitive) = primitive_of(premises, output, factor)? else { continue };
+        let rate = premises.arena().directional(premises.at_phi(primitive), &premises.plant.rates());
+        if let Some(row) = affine::of(premises.plant, premises.domain, rate)? {
+            return Ok(Some(Equation::new(premises, primitive, premises.of_row(&row), vec![output])));
+        }
+        curved = curved.or(in_z_alone(premises, rate)?.map(|right| (primitive, right)));
     }
-    let others: Vec<(Symbol, Expr)> =
-        rates.iter().filter(|other| other.0 != output).map(|other| (plant.y[other.0].symbol, other.1)).collect();
-    let signals = unknown.iter().copied().chain([y]).chain(others.iter().map(|other| other.0));
-    if !arena.symbols_of(&[factor]).is_subset(&signals.chain(premises.constants()).collect()) {
-        return Ok(None);
-    }
-    let Some(primitive) = primitive(premises, factor, y) else { return Ok(None) };
-    let slopes = plant.z.iter().map(|z| arena.derivative(primitive, *z));
-    let along = slopes.enumerate().map(|(index, slope)| arena.mul(slope, premises.velocity(index)));
-    let beside = others.iter().map(|(other, rate)| arena.mul(arena.derivative(primitive, *other), *rate));
-    let right = arena.add(arena.mul(factor, rate), arena.sum(along.chain(beside)));
+    Ok(curved.map(|(primitive, right)| Equation::new(premises, primitive, right, vec![output])))
+}
+
+/// The primitive of a factor of the rate, in z and the outputs: the unknown itself multiplies the rate; a nonlinear
+/// factor is not taken for such a regression.
+fn primitive_of(premises: &Premises<'_>, output: usize, factor: Expr) -> Result<Option<Expr>, Obstacle> {
+    let plant = premises.plant;
+    let Some(row) = affine::of(plant, premises.domain, factor)? else { return Ok(None) };
+    let moving = plant.y.iter().filter(|output| output.rate.is_some()).map(|output| output.symbol);
+    let is_known = plant.arena.symbols_of(&row).is_subset(&moving.chain(premises.constants()).collect());
+    Ok(if is_known { primitive(premises, premises.of_row(&row), plant.y[output].symbol) } else { None })
+}
+
+/// A rate of z and the outputs as a function of z without a denominator that holds z, proved; none if it is not one.
+fn in_z_alone(premises: &Premises<'_>, rate: Expr) -> Result<Option<Expr>, Obstacle> {
+    let (arena, domain) = (premises.arena(), premises.domain);
+    let Some(right) = premises.in_z(rate).filter(|right| !premises.is_hidden(*right)) else { return Ok(None) };
     // The divisor is gone: at z = chi + theta nothing keeps it from zero.
     let field = Field::over(arena, &domain.facts, &[right])?;
     let whole = field.show(&field.fraction(right)?);
     // Another output may bring its own denominator with it.
-    if self::factor(premises, whole)?.is_some_and(|below| arena.depends_on(below, &unknown)) {
+    if factor(premises, whole)?.is_some_and(|below| arena.depends_on(below, &premises.unknown())) {
         return Ok(None);
     }
     let right = with_fewer_conditions(arena, domain, premises.shortest(right), &[whole]);
-    // Proved of the plant itself: at z = phi(x, y), along its vector field.
-    let is_proved = premises.are_equal(rate_along(premises, primitive), premises.at_phi(right));
-    Ok(is_proved.then(|| Equation::new(premises, primitive, right, vec![output])))
+    Ok(premises.are_equal(rate, premises.at_phi(right)).then_some(right))
 }
 
 /// The multiplier of the rate: the factor of its denominator that holds z.

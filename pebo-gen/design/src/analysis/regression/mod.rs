@@ -32,7 +32,7 @@ use crate::source::{Code, Diagnostic};
 use build::Obstruction;
 use pool::{Pool, Rest};
 pub(super) use premises::Premises;
-use selection::Selection;
+use selection::{Part, Selection, Source};
 use trial::Trial;
 
 /// The diagnostics of unknowns that are not identified.
@@ -56,7 +56,7 @@ pub(super) fn prove(
 ) -> (Claim<Regression>, Claim<Identifiability>) {
     let pool = Pool::of(premises);
     let mut tried = Tried::default();
-    let (first, others) = Selection::order(premises.plant);
+    let (first, others) = selection::order(premises.plant);
     for (is_first, selection) in first.iter().map(|s| (true, *s)).chain(others.iter().map(|s| (false, *s))) {
         let is_failed = tried.failures.iter().any(|(failed, _)| *failed == selection);
         if premises.plant.arena.budget().is_exhausted() {
@@ -65,7 +65,7 @@ pub(super) fn prove(
         if is_failed || is_first && tried.given.is_some() {
             continue;
         }
-        let equations = selection.equations(&pool, tried.given.as_ref(), &tried.rest);
+        let equations = selection::equations(selection, &pool, tried.given.as_ref(), &tried.rest);
         if equations.is_empty() {
             continue;
         }
@@ -82,7 +82,7 @@ pub(super) fn prove(
             return trial.claims();
         }
         match selection {
-            Selection::MoreLinear | Selection::More => tried.strengthened = Some(trial),
+            (Source::More, _) => tried.strengthened = Some(trial),
             _ if is_first => tried.given = Some(trial),
             _ => {}
         }
@@ -121,8 +121,7 @@ impl Tried {
 
     /// Tests whether no equation was left out that could say more of the unknowns.
     fn is_complete(&self) -> bool {
-        let Some(rest) = self.rest.get() else { return false };
-        let whole = if rest.curved.is_empty() { Selection::MoreLinear } else { Selection::More };
-        rest.complete && !self.failures.iter().any(|(selection, _)| *selection == whole)
+        let is_whole = |failure: &(Selection, Obstruction)| failure.0 == (Source::More, Part::Whole);
+        self.rest.get().is_some_and(|rest| rest.complete) && !self.failures.iter().any(is_whole)
     }
 }

@@ -62,12 +62,12 @@ fn equation(pool: &Pool<'_>, output: usize) -> Result<Option<Equation>, UnusedRe
     if premises.is_moved(formula.expr) {
         return Err(UnusedReason::Hidden);
     }
-    let rate = pool.rates.iter().find(|rate| rate.output == output).ok_or(UnusedReason::Nonlinear)?;
-    let says_something = |equation: &&Equation| {
-        equation.factors.iter().flatten().flatten().any(|factor| !premises.arena().is_zero(*factor))
-    };
-    match rate.affine() {
-        Some(equation) => Ok(Some(equation).filter(says_something).cloned()),
-        None => pool.cleared_affine(rate).map(Some).ok_or(UnusedReason::Nonlinear),
+    let is_own = |equation: &&Equation| equation.is_linear() && equation.outputs == [output];
+    if let Some(cleared) = pool.cleared().iter().find(is_own) {
+        return Ok(Some(cleared.clone()));
     }
+    let rate = pool.affine().find(is_own).ok_or(UnusedReason::Nonlinear)?;
+    let mut factors = rate.factors.iter().flatten().flatten();
+    let says_something = factors.any(|factor| !premises.arena().is_zero(*factor));
+    Ok(says_something.then(|| rate.clone()))
 }

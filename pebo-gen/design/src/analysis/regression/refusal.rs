@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use super::build::Obstruction;
 use super::cancelling::moved_freely;
-use super::pool::{Form, Pool, Rate};
+use super::pool::{Pool, Rate};
 use super::premises::Premises;
-use super::selection::Selection;
+use super::selection::{Part, Selection, Source};
 use super::separation::is_separable;
 use super::{cleared, implicit, separation};
 use crate::analysis::design::{Claim, Comparison, Regression, Verdict, Witness};
@@ -17,8 +17,9 @@ use pebo_cas::domain::zero::refute;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Symbol};
 
-const NO_SEPARATION: &str = "the rate is not a sum of known signals times functions of theta either: polynomials, \
-    exponentials, sines and cosines of z were tried";
+const NOT_AFFINE: &str = "not an affine function of phi with coefficients in y and u";
+const NOT_SEARCHED: &str =
+    "for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for";
 
 /// The verdict without a regression, by the selections that failed.
 pub(super) fn refused(
@@ -26,19 +27,19 @@ pub(super) fn refused(
     failures: &[(Selection, Obstruction)],
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
-    let failure = |of: Selection| Some(&failures.iter().find(|(selection, _)| *selection == of)?.1);
+    let failure = |of: Source| Some(&failures.iter().find(|(selection, _)| *selection == (of, Part::Whole))?.1);
     let has_rates = pool.unmoved().next().is_some();
     let by_claim = failures.iter().find_map(|(selection, obstruction)| match obstruction {
-        Obstruction::Refused(verdict, said) if !has_rates || *selection != Selection::OfStates => Some((verdict, said)),
+        Obstruction::Refused(verdict, said) if !has_rates || selection.0 != Source::OfStates => Some((verdict, said)),
         _ => None,
     });
     let verdict = if let Some((verdict, said)) = by_claim {
         found.extend(said.iter().cloned());
         *verdict
     } else if has_rates {
-        of_rates(pool, failure(Selection::Rates), found)
+        of_rates(pool, failure(Source::Rates), found)
     } else if !pool.premises.plant.identities.is_empty() {
-        of_identities(&pool.premises, failure(Selection::OfStates), found)
+        of_identities(&pool.premises, failure(Source::OfStates), found)
     } else if pool.rates.is_empty() {
         found.push(without_equations(pool.premises.plant));
         Verdict::Refuted
@@ -59,33 +60,30 @@ fn without_equations(plant: &Plant) -> Diagnostic {
 /// The identities make no regression.
 fn of_identities(premises: &Premises<'_>, failure: Option<&Obstruction>, found: &mut Vec<Diagnostic>) -> Verdict {
     let plant = premises.plant;
-    let Some(first) = plant.identities.first() else { return Verdict::Undecided };
-    let message = "no regression that is linear in functions of theta was found in this identity";
-    if premises.cascade.lambda.is_some() {
-        let obstacle = plant.identities.iter().find_map(|identity| cleared::rows(premises, identity.expr).err());
-        found.push(match obstacle {
-            Some(obstacle) => undecided(plant, plant.y.len(), first.span, &obstacle),
-            None => not_affine_identity(first.span),
-        });
-    } else if premises.left_inverse.is_none() {
+    let span = plant.identities[0].span;
+    let is_generalised = premises.cascade.lambda.is_some();
+    if !is_generalised && premises.left_inverse.is_none() {
         return Verdict::Skipped;
-    } else {
-        found.push(match failure {
-            Some(Obstruction::Unrecovered(_)) => undecided(plant, 0, first.span, &Obstacle::NoWitness),
-            Some(Obstruction::Open(obstacle)) => undecided(plant, 0, first.span, obstacle),
-            _ => Diagnostic::error(Code::RegressionUndecided, first.span, message)
-                .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
-        });
     }
+    let unreadable = || plant.identities.iter().find_map(|identity| cleared::rows(premises, identity.expr).err());
+    found.push(match failure {
+        Some(Obstruction::Unrecovered(_)) => undecided(plant, 0, span, &Obstacle::NoWitness),
+        Some(Obstruction::Open(obstacle)) => undecided(plant, 0, span, obstacle),
+        _ if is_generalised => match unreadable() {
+            Some(obstacle) => undecided(plant, plant.y.len(), span, &obstacle),
+            None => open(span, "for a generalised cascade, no regression was found in this identity")
+                .label(NOT_AFFINE)
+                .note(NOT_SEARCHED)
+                .help("choose a phi in which it is affine, or one whose derivative is free of x"),
+        },
+        _ => open(span, "no regression that is linear in functions of theta was found in this identity")
+            .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
+    });
     Verdict::Undecided
 }
 
-fn not_affine_identity(span: Span) -> Diagnostic {
-    let message = "for a generalised cascade, no regression was found in this identity";
+fn open(span: Span, message: impl Into<Box<str>>) -> Diagnostic {
     Diagnostic::error(Code::RegressionUndecided, span, message)
-        .label("not an affine function of phi with coefficients in y and u")
-        .note("for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for")
-        .help("choose a phi in which it is affine, or one whose derivative is free of x")
 }
 
 /// Every given rate depends on an unmeasured signal, and no combination gave a regression.
@@ -129,70 +127,71 @@ fn of_moved_rates(pool: &Pool<'_>, found: &mut Vec<Diagnostic>) -> Verdict {
 /// Outputs that unmeasured signals move, perhaps not in all combinations.
 fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
     let names: Vec<String> = outputs.iter().map(|index| plant.arena.name(plant.y[*index].symbol)).collect();
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        "it could not be decided whether the outputs determine the unknowns while unmeasured signals act on them",
-    )
-    .note(format!(
-        "no regression was found among the combinations of {} with constant coefficients that are free of these signals",
-        listed(names.iter().map(String::as_str))
-    ))
-    .help("give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`")
+    let message =
+        "it could not be decided whether the outputs determine the unknowns while unmeasured signals act on them";
+    open(span, message)
+        .note(format!(
+            "no regression was found among the combinations of {} with constant coefficients that are free of these \
+             signals",
+            listed(names.iter().map(String::as_str))
+        ))
+        .help(
+            "give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`",
+        )
 }
 
 /// Reports the obstacle of each nonlinear rate; the verdict is the firmest that is left.
 fn of_rates(pool: &Pool<'_>, failure: Option<&Obstruction>, found: &mut Vec<Diagnostic>) -> Verdict {
-    let (premises, plant) = (&pool.premises, pool.premises.plant);
-    let has_form = |rate: &Rate| rate.in_z().is_some_and(|equation| is_separable(premises, equation.rate));
-    let mut curved: Vec<&Rate> = pool.unmoved().filter(|rate| rate.affine().is_none()).collect();
+    let premises = &pool.premises;
+    let has_form = |rate: &Rate| rate.equation.iter().any(|equation| is_separable(premises, equation.rate));
+    let mut curved: Vec<&Rate> = pool.curved().collect();
     // Rates that are no sums of functions of theta are the obstacles, if there are such.
     if matches!(failure, Some(Obstruction::Inseparable)) && curved.iter().any(|rate| !has_form(rate)) {
         curved.retain(|rate| !has_form(rate));
     }
-    let in_z = || pool.unmoved().map(|rate| Some(rate.in_z()?.rate)).collect::<Option<Vec<Expr>>>();
-    let separated = || in_z().map(|in_z| separation::separate(premises, &in_z));
-    let separated = if premises.cascade.lambda.is_some() { separated() } else { None };
+    let in_z: Vec<Expr> = pool.unmoved().map(|equation| equation.rate).collect();
+    let is_generalised = premises.cascade.lambda.is_some();
+    let untried = if is_generalised { separation::separate(premises, &in_z) } else { Ok(None) };
     // An identity may serve in place of the rates, in a form that was not found, or a combination that was not tried.
-    let is_refuted = plant.identities.is_empty() && !pool.may_have_affine_combinations();
+    let (combined, moving) = pool.affine_combinations();
+    let is_refuted = premises.plant.identities.is_empty() && combined.len() <= pool.affine().count() && !moving;
     let mut verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
     for rate in curved {
-        let (index, span) = (rate.output, rate.formula.span);
-        let mut obstacle = if let Form::Curved(_, obstacle) = &rate.form { obstacle.clone() } else { None };
-        match (failure, &separated) {
-            (_, Some(Ok(Some(_)))) => {
-                verdict = Verdict::Undecided;
-                found.push(not_tried(plant, index, span));
-                continue;
-            }
-            (Some(Obstruction::Unrecovered(eta)), _) => {
-                verdict = Verdict::Undecided;
-                let functions: Vec<String> = eta.iter().map(|function| plant.arena.print(*function)).collect();
-                found.push(not_recovered(plant, index, span, &functions.join(", ")));
-                continue;
-            }
-            (Some(Obstruction::Open(open)), _) | (_, Some(Err(open))) => obstacle = Some(open.clone()),
-            _ => {}
-        }
-        // A rate that was given up is not refuted: it may be linear in functions of theta all the same.
-        let curvature = if obstacle.is_none() { nonlinear(premises, rate.formula.expr) } else { None };
-        let form = match rate.in_z() {
-            Some(equation) => other_form(premises, equation.rate),
-            // The rate as a function of z is unknown: it may be linear with functions of z as factors or as unknowns.
-            None => Some(constant_components(premises).next().map_or(OtherForm::Unknown, OtherForm::Function)),
+        let obstacle = match (failure, &untried) {
+            (Some(Obstruction::Open(obstacle)), _) | (_, Err(obstacle)) => Some(obstacle),
+            _ => rate.obstacle.as_ref(),
         };
-        if let (Some(point), Some(form)) = (&curvature, form) {
+        let diagnostic = match failure {
+            _ if matches!(untried, Ok(Some(_))) => in_functions(premises.plant, rate, None),
+            Some(Obstruction::Unrecovered(eta)) => in_functions(premises.plant, rate, Some(eta)),
+            _ => of_rate(premises, rate, obstacle),
+        };
+        if diagnostic.code == Code::RegressionUndecided {
             verdict = Verdict::Undecided;
-            found.push(not_in_other_forms(plant, index, span, point, form));
-        } else if let Some(point) = curvature {
-            let summands = blame::summands(plant, index, |term| nonlinear(premises, term).is_some());
-            found.push(refuted(plant, index, &summands, &point, NO_SEPARATION));
-        } else {
-            verdict = Verdict::Undecided;
-            found.push(undecided(plant, index, span, &obstacle.unwrap_or(Obstacle::NoWitness)));
         }
+        found.push(diagnostic);
     }
     verdict
+}
+
+/// A rate that is not affine, with the obstacle to a decision.
+fn of_rate(premises: &Premises<'_>, rate: &Rate, obstacle: Option<&Obstacle>) -> Diagnostic {
+    let (plant, index, span) = (premises.plant, rate.output, rate.formula.span);
+    // A rate that was given up is not refuted: it may be linear in functions of theta all the same.
+    let point = if obstacle.is_none() { nonlinear(premises, rate.formula.expr) } else { None };
+    let Some(point) = point else { return undecided(plant, index, span, obstacle.unwrap_or(&Obstacle::NoWitness)) };
+    let form = match &rate.equation {
+        Some(equation) if premises.left_inverse.is_some() => other_form(premises, equation.rate),
+        // The rate as a function of z is unknown: it may be linear with functions of z as factors or as unknowns.
+        _ => Some(constant_components(premises).next().map_or(OtherForm::Unknown, OtherForm::Function)),
+    };
+    match form {
+        Some(form) => not_in_other_forms(plant, rate, &point, form),
+        None => {
+            let summands = blame::summands(plant, index, |term| nonlinear(premises, term).is_some());
+            refuted(plant, index, &summands, &point)
+        }
+    }
 }
 
 /// A form in which the unknowns of a rate that is not affine, a function of z, may be linear all the same, if not all
@@ -229,30 +228,24 @@ fn constant_components(premises: &Premises<'_>) -> impl Iterator<Item = usize> {
     (0..cascade.h.len()).filter(is_constant)
 }
 
-/// A generalised cascade whose outputs may be linear in functions of theta.
-fn not_tried(plant: &Plant, index: usize, span: Span) -> Diagnostic {
-    let output = plant.arena.name(plant.y[index].symbol);
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether the rate of {output} is linear in functions of theta"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note("obstacle: for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for")
-    .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
-}
-
-/// A rate that is linear in functions of theta from which theta was not found.
-fn not_recovered(plant: &Plant, index: usize, span: Span, functions: &str) -> Diagnostic {
-    let output = plant.arena.name(plant.y[index].symbol);
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("the rate of {output} is linear in functions of theta, but theta was not recovered from them"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note(format!("the functions of theta: {functions}"))
-    .help("choose a phi in which this rate is affine, or give an identity under `identities`")
+/// A rate that is linear in functions of theta: from these it was not recovered, or they are of no use under a
+/// generalised cascade.
+fn in_functions(plant: &Plant, rate: &Rate, functions: Option<&Vec<Expr>>) -> Diagnostic {
+    let output = plant.arena.name(plant.y[rate.output].symbol);
+    let Some(functions) = functions else {
+        let message = format!("it could not be decided whether the rate of {output} is linear in functions of theta");
+        return open(rate.formula.span, message)
+            .label(NOT_AFFINE)
+            .note(format!("obstacle: {NOT_SEARCHED}"))
+            .help("choose a phi whose derivative is free of x, or one in which this rate is affine");
+    };
+    let functions: Vec<String> = functions.iter().map(|function| plant.arena.print(*function)).collect();
+    let message =
+        format!("the rate of {output} is linear in functions of theta, but theta was not recovered from them");
+    open(rate.formula.span, message)
+        .label(NOT_AFFINE)
+        .note(format!("the functions of theta: {}", functions.join(", ")))
+        .help("choose a phi in which this rate is affine, or give an identity under `identities`")
 }
 
 /// The reason why a rate is no affine function of the transform, by points of the domain.
@@ -292,22 +285,26 @@ fn curvature(premises: &Premises<'_>, rate: Expr) -> Option<Witness> {
     })
 }
 
-fn refuted(plant: &Plant, index: usize, summands: &[Formula], point: &str, other_forms: &str) -> Diagnostic {
-    let arena = &plant.arena;
-    let output = arena.name(plant.y[index].symbol);
+fn refuted(plant: &Plant, index: usize, summands: &[Formula], point: &str) -> Diagnostic {
+    let output = plant.arena.name(plant.y[index].symbol);
     let (first, others) = summands.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
-    let diagnostic = Diagnostic::error(
-        Code::RegressionNonlinear,
-        first,
-        format!("the rate of {output} is not linear in the unknowns"),
-    );
-    let diagnostic = others
+    let message = format!("the rate of {output} is not linear in the unknowns");
+    let diagnostic = Diagnostic::error(Code::RegressionNonlinear, first, message);
+    let also =
+        |diagnostic: Diagnostic, other: &Formula| diagnostic.also(other.span, "this term is not affine in phi either");
+    others
         .iter()
-        .fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "this term is not affine in phi either"));
-    diagnostic.label("not an affine function of phi with coefficients in y and u").note(point).note(other_forms).help(
-        "choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
-           an identity under `identities`",
-    )
+        .fold(diagnostic, also)
+        .label(NOT_AFFINE)
+        .note(point)
+        .note(
+            "the rate is not a sum of known signals times functions of theta either: polynomials, exponentials, sines \
+             and cosines of z were tried",
+        )
+        .help(
+            "choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
+             an identity under `identities`",
+        )
 }
 
 /// A form of a regression that is not affine in z.
@@ -322,16 +319,12 @@ enum OtherForm {
 }
 
 /// A rate that is not affine in z, but may be linear in the unknowns in another form.
-fn not_in_other_forms(plant: &Plant, index: usize, span: Span, point: &str, form: OtherForm) -> Diagnostic {
+fn not_in_other_forms(plant: &Plant, rate: &Rate, point: &str, form: OtherForm) -> Diagnostic {
     let arena = &plant.arena;
-    let output = arena.name(plant.y[index].symbol);
-    let diagnostic = Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note(point);
+    let output = arena.name(plant.y[rate.output].symbol);
+    let message =
+        format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns");
+    let diagnostic = open(rate.formula.span, message).label(NOT_AFFINE).note(point);
     match form {
         OtherForm::Multiplied => diagnostic
             .note(
@@ -353,11 +346,7 @@ fn not_in_other_forms(plant: &Plant, index: usize, span: Span, point: &str, form
 
 fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obstacle) -> Diagnostic {
     let output = plant.y.get(index).map_or_else(String::new, |o| format!(" of {}", plant.arena.name(o.symbol)));
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether the rate{output} is linear in the unknowns"),
-    )
-    .note(format!("obstacle: {obstacle}"))
-    .help("simplify the formula, or state signs under `assume`")
+    open(span, format!("it could not be decided whether the rate{output} is linear in the unknowns"))
+        .note(format!("obstacle: {obstacle}"))
+        .help("simplify the formula, or state signs under `assume`")
 }

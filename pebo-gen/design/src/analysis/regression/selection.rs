@@ -9,15 +9,13 @@ use super::trial::Trial;
 use crate::analysis::design::{RegressionKind, Verdict};
 use crate::plant::{Plant, RelationForm};
 
-/// A selection of equations.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Selection {
-    /// All rates that no unmeasured signal moves.
+/// Equations that belong together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The rates that no unmeasured signal moves.
     Rates,
     /// The same, those with an unknown below times their denominators.
     Cleared,
-    /// Of these, the ones that are affine in phi as formulas in x.
-    ClearedAffine,
     /// Combinations of outputs from whose rates unmeasured signals cancel.
     Combinations,
     /// Identities, or else relations among the components of the transform.
@@ -26,96 +24,113 @@ pub(super) enum Selection {
     AffineCombinations,
     /// Relations under the derivative.
     Differentiated,
-    /// The rates that are affine in phi, without others.
-    AffineRates,
-    /// The rates that are functions of theta, without others.
-    SeparableRates,
-    /// The identities that are affine in phi.
-    AffineIdentities,
-    /// The first regression and what else is affine in z.
-    MoreLinear,
     /// The first regression and all other equations.
     More,
 }
 
-use Selection::{
-    AffineCombinations, AffineIdentities, AffineRates, Cleared, ClearedAffine, Combinations, Differentiated, More,
-    MoreLinear, OfStates, Rates, SeparableRates,
-};
+/// Equations of one source that are used: a part only where that leaves others out.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    /// All.
+    Whole,
+    /// Those that are affine in z.
+    Linear,
+    /// Those that are sums of known signals times functions of theta.
+    Separable,
+}
 
-impl Selection {
-    /// Selections for a first regression, which the others build on; then the others.
-    pub(super) fn order(plant: &Plant) -> (&'static [Self], &'static [Self]) {
-        match plant.relation_form {
-            Some((RelationForm::Differentiated, _)) => (&[], &[Differentiated]),
-            Some((RelationForm::Static, _)) => (&[OfStates, Rates], &[AffineIdentities, MoreLinear, More]),
-            None => (
-                &[Rates, Cleared, ClearedAffine, Combinations, OfStates, AffineCombinations],
-                &[Differentiated, AffineRates, SeparableRates, AffineIdentities, OfStates, MoreLinear, More],
-            ),
+/// A selection of equations.
+pub(super) type Selection = (Source, Part);
+
+use Part::{Linear, Separable, Whole};
+use Source::{AffineCombinations, Cleared, Combinations, Differentiated, More, OfStates, Rates};
+
+/// Selections for a first regression, which the others build on; then the others.
+pub(super) fn order(plant: &Plant) -> (&'static [Selection], &'static [Selection]) {
+    match plant.relation_form {
+        Some((RelationForm::Differentiated, _)) => (&[], &[(Differentiated, Whole)]),
+        Some((RelationForm::Static, _)) => {
+            (&[(OfStates, Whole), (Rates, Whole)], &[(OfStates, Linear), (More, Linear), (More, Whole)])
         }
+        None => (
+            &[
+                (Rates, Whole),
+                (Cleared, Whole),
+                (Cleared, Linear),
+                (Combinations, Whole),
+                (OfStates, Whole),
+                (AffineCombinations, Whole),
+            ],
+            &[
+                (Differentiated, Whole),
+                (Rates, Linear),
+                (Rates, Separable),
+                (OfStates, Linear),
+                (OfStates, Whole),
+                (More, Linear),
+                (More, Whole),
+            ],
+        ),
     }
+}
 
-    /// The equations, beside a first regression that does not identify the unknowns, if there is one; empty where the
-    /// selection is none, or not a new one.
-    pub(super) fn equations(self, pool: &Pool<'_>, given: Option<&Trial>, rest: &OnceCell<Rest>) -> Vec<Equation> {
+/// The equations of a selection, beside a first regression that does not identify the unknowns, if there is one; empty
+/// where it adds none.
+pub(super) fn equations(
+    (source, part): Selection,
+    pool: &Pool<'_>,
+    given: Option<&Trial>,
+    rest: &OnceCell<Rest>,
+) -> Vec<Equation> {
+    let mut equations = source.equations(pool, given, rest);
+    if part == Whole {
+        return equations;
+    }
+    let before = equations.len();
+    let is_given = |e: &Equation| source == More && given.is_some_and(|given| given.equations.contains(e));
+    let is_separable = |e: &Equation| part == Separable && is_separable(&pool.premises, e.rate);
+    equations.retain(|equation| equation.is_linear() || is_given(equation) || is_separable(equation));
+    let is_new = equations.len() < before && (source != Cleared || equations.len() > pool.affine().count());
+    if is_new { equations } else { Vec::new() }
+}
+
+impl Source {
+    fn equations(self, pool: &Pool<'_>, given: Option<&Trial>, rest: &OnceCell<Rest>) -> Vec<Equation> {
         let plant = pool.premises.plant;
         let has_identities = !plant.identities.is_empty();
-        let rest = |given: &Trial| rest.get_or_init(|| pool.without(&given.equations));
+        let is_open = |given: Option<&Trial>| match given {
+            Some(given) => has_identities && given.identifiability.verdict == Verdict::Refuted,
+            None if has_identities && pool.curved().next().is_some() => true,
+            None => pool.unmoved().next().is_none() || plant.wants(RelationForm::Static),
+        };
         match (self, given) {
-            (Rates, _) => pool.unmoved().map(|rate| rate.in_z().cloned()).collect::<Option<_>>().unwrap_or_default(),
-            (Cleared | ClearedAffine, None) if pool.has_curved() => {
-                let [mut cleared, others] = pool.cleared();
-                match (self, others.is_empty()) {
-                    (Cleared, _) => cleared.extend(others),
-                    (_, true) => cleared.clear(),
-                    (_, false) => {}
-                }
-                if cleared.is_empty() { cleared } else { [cleared, pool.affine()].concat() }
+            (Rates, None) => pool.unmoved().cloned().collect(),
+            (Cleared, None) if !pool.cleared().is_empty() => {
+                pool.cleared().iter().chain(pool.affine()).cloned().collect()
             }
             (Combinations, None) if pool.unmoved().next().is_none() => {
                 let outputs: Vec<usize> = pool.rates.iter().map(|rate| rate.output).collect();
                 pool.combinations(&outputs).into_iter().collect::<Option<_>>().unwrap_or_default()
             }
-            (OfStates, None) => {
-                let without_rates = pool.unmoved().next().is_none() || plant.wants(RelationForm::Static);
-                let is_open = without_rates || has_identities && pool.has_curved();
-                if is_open { usable(pool, pool.of_states()) } else { Vec::new() }
+            (OfStates, given) if is_open(given) => {
+                // Under a generalised cascade there are no functions of theta.
+                let is_usable = |e: &&Equation| e.is_linear() || pool.premises.cascade.lambda.is_none();
+                pool.of_states().iter().filter(is_usable).cloned().collect()
             }
-            (OfStates, Some(given)) if has_identities && given.identifiability.verdict == Verdict::Refuted => {
-                usable(pool, pool.of_states())
+            (AffineCombinations, None) if pool.curved().next().is_some() => {
+                let (found, _) = pool.affine_combinations();
+                let is_more = found.len() > pool.affine().count();
+                found.iter().filter(|_| is_more).cloned().collect::<Option<_>>().unwrap_or_default()
             }
-            (AffineCombinations, None) if pool.has_curved() => pool.affine_combinations(),
-            (Differentiated, given) if given.is_none_or(|given| is_long(plant, given)) => {
-                let equations = pool.differentiated();
-                if equations.iter().all(Equation::is_linear) { equations } else { Vec::new() }
-            }
-            (AffineRates, None) => pool.affine(),
-            (SeparableRates, None) => {
-                let of_rate = |rate: &_| Some(super::pool::Rate::in_z(rate)?.clone());
-                let known = pool.unmoved().filter_map(of_rate);
-                known.filter(|equation| is_separable(&pool.premises, equation.rate)).collect()
-            }
-            (AffineIdentities, _) if has_identities => {
-                let affine = pool.of_states().iter().filter(|equation| equation.is_linear()).cloned();
-                let affine: Vec<Equation> = affine.collect();
-                if affine.len() < pool.of_states().len() { affine } else { Vec::new() }
-            }
-            (MoreLinear, Some(given)) if !rest(given).linear.is_empty() => {
-                [given.equations.as_slice(), &rest(given).linear].concat()
-            }
-            (More, Some(given)) if !rest(given).curved.is_empty() => {
-                [given.equations.as_slice(), &rest(given).linear, &rest(given).curved].concat()
+            (Differentiated, given) if given.is_none_or(|given| is_long(plant, given)) => pool.differentiated(),
+            (More, Some(given)) => {
+                let rest = rest.get_or_init(|| pool.without(&given.equations));
+                let is_more = !rest.equations.is_empty();
+                given.equations.iter().chain(&rest.equations).filter(|_| is_more).cloned().collect()
             }
             _ => Vec::new(),
         }
     }
-}
-
-/// The equations from which a regression may be made: under a generalised cascade those that are affine in z.
-fn usable(pool: &Pool<'_>, equations: &[Equation]) -> Vec<Equation> {
-    let is_generalised = pool.premises.cascade.lambda.is_some();
-    equations.iter().filter(|equation| !is_generalised || equation.is_linear()).cloned().collect()
 }
 
 /// Tests whether a relation as it holds at every instant adds unknowns to theta.

@@ -22,7 +22,7 @@ pub(super) fn steps(
     eta: &[Expr],
     recovered: &ThetaRecovery,
     found: &mut Vec<Diagnostic>,
-) -> Result<Vec<(Symbol, Expr)>, (Verdict, Diagnostic)> {
+) -> Result<Vec<(Symbol, Expr)>, (Verdict, Vec<Diagnostic>)> {
     let (arena, plant, domain) = (premises.arena(), premises.plant, premises.domain);
     let mut steps = Vec::new();
     for &(index, step) in &recovered.turning {
@@ -53,7 +53,7 @@ pub(super) fn steps(
                 continue;
             }
             let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
-            return Err((verdict, lost_by_turns(plant, (index, step), (state, shift), blind)));
+            return Err((verdict, vec![lost_by_turns(plant, (index, step), (state, shift), blind)]));
         }
     }
     Ok(steps)
