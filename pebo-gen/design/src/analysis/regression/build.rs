@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 
 use super::equation::Equation;
 use super::premises::Premises;
-use super::separation::{absorb_constants, recoverable, separate};
+use super::recovery::recoverable;
+use super::separation::{absorb_constants, separate};
 use super::steps::steps;
 use crate::analysis::design::{Regression, RegressionKind, Verdict};
 use crate::source::Diagnostic;

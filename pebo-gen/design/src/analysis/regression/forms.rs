@@ -6,8 +6,7 @@ use super::pool::Pool;
 use super::selection::is_long;
 use super::trial::Trial;
 use crate::analysis::design::Alternative;
-use crate::plant::{Plant, RelationForm};
-use crate::source::{Code, Diagnostic, Span};
+use crate::plant::RelationForm;
 
 /// The trial in the preferable form of its relation, with the other one where there is one. An author's own identity is
 /// used as it is written.
@@ -45,30 +44,4 @@ pub(super) fn is_chosen(pool: &Pool<'_>, trial: &Trial) -> bool {
         Some((RelationForm::Static, _)) => trial.equations.iter().any(|equation| equation.is_instant(&pool.premises)),
         Some((RelationForm::Differentiated, _)) => trial.is_identified(),
     }
-}
-
-/// Reports that no regression has the chosen form.
-pub(super) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
-    let (how, needs, other) = match form {
-        RelationForm::Static => (
-            "from a relation among the components of phi as it holds at every instant",
-            "it needs an output that is given by its value (`g_y`), an identity, or components of phi that outputs and \
-             parameters relate",
-            "differentiated",
-        ),
-        RelationForm::Differentiated => (
-            "by differentiating a relation among the components of phi",
-            "it needs a relation of degree two in the components of phi, with constant coefficients at their products, \
-             whose derivative is affine in them",
-            "static",
-        ),
-    };
-    let message = format!("no identifiable regression was found {how}");
-    let diagnostic = Diagnostic::error(Code::RegressionUndecided, span, message)
-        .label(format!("`regression: {}` asks for one", form.name()))
-        .note(needs);
-    let about = plant.identities.first().map(|identity| (identity.span, "the identity"));
-    let about = about.or_else(|| Some((plant.phi.first()?.span, "phi")));
-    let diagnostic = about.into_iter().fold(diagnostic, |diagnostic, (span, what)| diagnostic.also(span, what));
-    diagnostic.help(format!("leave out `regression`, or write `regression: {other}`"))
 }

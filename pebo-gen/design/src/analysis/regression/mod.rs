@@ -9,6 +9,7 @@ mod affine_rate;
 mod build;
 mod cancelling;
 mod cleared;
+mod diagnostics;
 mod differentiated;
 mod equation;
 mod forms;
@@ -16,6 +17,7 @@ mod implicit;
 mod outputs;
 mod pool;
 mod premises;
+mod recovery;
 mod refusal;
 mod relations;
 mod selection;
@@ -98,7 +100,7 @@ impl Tried {
         let is_complete = self.is_complete();
         let Self { given, strengthened, failures, rest } = self;
         if let Some(form) = chosen.filter(|_| !given.as_ref().is_some_and(|given| forms::is_chosen(pool, given))) {
-            found.push(forms::no_such_form(plant, form));
+            found.push(diagnostics::no_such_form(plant, form));
             return (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped());
         }
         let Some(mut given) = given else {

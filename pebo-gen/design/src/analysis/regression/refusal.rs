@@ -4,6 +4,9 @@ use std::collections::BTreeSet;
 
 use super::build::Obstruction;
 use super::cancelling::moved_freely;
+use super::diagnostics::{
+    OtherForm, in_functions, maybe_hidden, not_in_identity, not_in_other_forms, refuted, undecided, without_equations,
+};
 use super::pool::{Pool, Rate};
 use super::premises::Premises;
 use super::selection::{Part, Selection, Source};
@@ -11,15 +14,11 @@ use super::separation::is_separable;
 use super::{cleared, implicit, separation};
 use crate::analysis::design::{Claim, Comparison, Regression, Verdict, Witness};
 use crate::analysis::{affine, blame};
-use crate::plant::{Formula, Plant};
-use crate::source::{Code, Diagnostic, Span, listed};
+use crate::plant::Formula;
+use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::zero::refute;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Symbol};
-
-const NOT_AFFINE: &str = "not an affine function of phi with coefficients in y and u";
-const NOT_SEARCHED: &str =
-    "for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for";
 
 /// The verdict without a regression, by the selections that failed.
 pub(super) fn refused(
@@ -49,14 +48,6 @@ pub(super) fn refused(
     Claim { verdict, result: None }
 }
 
-fn without_equations(plant: &Plant) -> Diagnostic {
-    let span = plant.y.first().map_or(Span::point(0), |output| output.span);
-    let message = "the model gives no equation from which the unknowns could be estimated";
-    Diagnostic::error(Code::RegressionNonlinear, span, message)
-        .label("no output has a rate under `f_y`, and there are no `identities`")
-        .help("give `f_y` for an output, or an expression in x and y that is zero under `identities`")
-}
-
 /// The identities make no regression.
 fn of_identities(premises: &Premises<'_>, failure: Option<&Obstruction>, found: &mut Vec<Diagnostic>) -> Verdict {
     let plant = premises.plant;
@@ -69,21 +60,12 @@ fn of_identities(premises: &Premises<'_>, failure: Option<&Obstruction>, found: 
     found.push(match failure {
         Some(Obstruction::Unrecovered(_)) => undecided(plant, 0, span, &Obstacle::NoWitness),
         Some(Obstruction::Open(obstacle)) => undecided(plant, 0, span, obstacle),
-        _ if is_generalised => match unreadable() {
+        _ => match unreadable().filter(|_| is_generalised) {
             Some(obstacle) => undecided(plant, plant.y.len(), span, &obstacle),
-            None => open(span, "for a generalised cascade, no regression was found in this identity")
-                .label(NOT_AFFINE)
-                .note(NOT_SEARCHED)
-                .help("choose a phi in which it is affine, or one whose derivative is free of x"),
+            None => not_in_identity(span, is_generalised),
         },
-        _ => open(span, "no regression that is linear in functions of theta was found in this identity")
-            .help("write it as a polynomial in the components of phi, or give `f_y` for an output"),
     });
     Verdict::Undecided
-}
-
-fn open(span: Span, message: impl Into<Box<str>>) -> Diagnostic {
-    Diagnostic::error(Code::RegressionUndecided, span, message)
 }
 
 /// Every given rate depends on an unmeasured signal, and no combination gave a regression.
@@ -122,22 +104,6 @@ fn of_moved_rates(pool: &Pool<'_>, found: &mut Vec<Diagnostic>) -> Verdict {
         );
     }
     verdict
-}
-
-/// Outputs that unmeasured signals move, perhaps not in all combinations.
-fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
-    let names: Vec<String> = outputs.iter().map(|index| plant.arena.name(plant.y[*index].symbol)).collect();
-    let message =
-        "it could not be decided whether the outputs determine the unknowns while unmeasured signals act on them";
-    open(span, message)
-        .note(format!(
-            "no regression was found among the combinations of {} with constant coefficients that are free of these \
-             signals",
-            listed(names.iter().map(String::as_str))
-        ))
-        .help(
-            "give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`",
-        )
 }
 
 /// Reports the obstacle of each nonlinear rate; the verdict is the firmest that is left.
@@ -228,26 +194,6 @@ fn constant_components(premises: &Premises<'_>) -> impl Iterator<Item = usize> {
     (0..cascade.h.len()).filter(is_constant)
 }
 
-/// A rate that is linear in functions of theta: from these it was not recovered, or they are of no use under a
-/// generalised cascade.
-fn in_functions(plant: &Plant, rate: &Rate, functions: Option<&Vec<Expr>>) -> Diagnostic {
-    let output = plant.arena.name(plant.y[rate.output].symbol);
-    let Some(functions) = functions else {
-        let message = format!("it could not be decided whether the rate of {output} is linear in functions of theta");
-        return open(rate.formula.span, message)
-            .label(NOT_AFFINE)
-            .note(format!("obstacle: {NOT_SEARCHED}"))
-            .help("choose a phi whose derivative is free of x, or one in which this rate is affine");
-    };
-    let functions: Vec<String> = functions.iter().map(|function| plant.arena.print(*function)).collect();
-    let message =
-        format!("the rate of {output} is linear in functions of theta, but theta was not recovered from them");
-    open(rate.formula.span, message)
-        .label(NOT_AFFINE)
-        .note(format!("the functions of theta: {}", functions.join(", ")))
-        .help("choose a phi in which this rate is affine, or give an identity under `identities`")
-}
-
 /// The reason why a rate is no affine function of the transform, by points of the domain.
 ///
 /// A second derivative, where the transform has as many components as there are states: it is then one-to-one on a
@@ -283,70 +229,4 @@ fn curvature(premises: &Premises<'_>, rate: Expr) -> Option<Witness> {
         let curvature = premises.at_phi(arena.derivative(arena.derivative(in_z, *first), *second));
         refute(arena, curvature, premises.domain).map(|point| Witness::of(curvature, &point))
     })
-}
-
-fn refuted(plant: &Plant, index: usize, summands: &[Formula], point: &str) -> Diagnostic {
-    let output = plant.arena.name(plant.y[index].symbol);
-    let (first, others) = summands.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
-    let message = format!("the rate of {output} is not linear in the unknowns");
-    let diagnostic = Diagnostic::error(Code::RegressionNonlinear, first, message);
-    let also =
-        |diagnostic: Diagnostic, other: &Formula| diagnostic.also(other.span, "this term is not affine in phi either");
-    others
-        .iter()
-        .fold(diagnostic, also)
-        .label(NOT_AFFINE)
-        .note(point)
-        .note(
-            "the rate is not a sum of known signals times functions of theta either: polynomials, exponentials, sines \
-             and cosines of z were tried",
-        )
-        .help(
-            "choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
-             an identity under `identities`",
-        )
-}
-
-/// A form of a regression that is not affine in z.
-#[derive(Clone, Copy)]
-enum OtherForm {
-    /// The rate times an unknown that it is divided by.
-    Multiplied,
-    /// In a function of this component, which is constant.
-    Function(usize),
-    /// As a function of z, which is not known without a left inverse.
-    Unknown,
-}
-
-/// A rate that is not affine in z, but may be linear in the unknowns in another form.
-fn not_in_other_forms(plant: &Plant, rate: &Rate, point: &str, form: OtherForm) -> Diagnostic {
-    let arena = &plant.arena;
-    let output = arena.name(plant.y[rate.output].symbol);
-    let message =
-        format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns");
-    let diagnostic = open(rate.formula.span, message).label(NOT_AFFINE).note(point);
-    match form {
-        OtherForm::Multiplied => diagnostic
-            .note(
-                "an unknown divides this rate, and the rate times it is no derivative of what is affine in phi with \
-                 polynomials of the outputs for coefficients; other factors were not tried",
-            )
-            .help("choose a phi in which this rate is affine, or measure another output"),
-        OtherForm::Unknown => diagnostic
-            .note("without a left inverse this rate is not known as a function of z, which may be linear in functions of theta")
-            .help("give the left inverse under `phi_left`, or choose a phi in which this rate is affine"),
-        OtherForm::Function(component) => {
-            let phi = arena.print(plant.phi[component].expr);
-            diagnostic
-                .note(format!("`{phi}` is constant, and so is each of its functions"))
-                .help(format!("take the functions of `{phi}` that this rate holds as components of phi"))
-        }
-    }
-}
-
-fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obstacle) -> Diagnostic {
-    let output = plant.y.get(index).map_or_else(String::new, |o| format!(" of {}", plant.arena.name(o.symbol)));
-    open(span, format!("it could not be decided whether the rate{output} is linear in the unknowns"))
-        .note(format!("obstacle: {obstacle}"))
-        .help("simplify the formula, or state signs under `assume`")
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::premises::Premises;
-use super::separation::ThetaRecovery;
+use super::recovery::ThetaRecovery;
 use crate::analysis::design::Verdict;
 use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::plant::Plant;
@@ -15,8 +15,8 @@ use pebo_cas::{Expr, Relation, Symbol};
 /// distinguish them from angles, which is a warning.
 ///
 /// # Errors
-/// The verdict on a regression that loses a state, and the reason: one that does not move by a constant, or an angle that moves by a
-/// fraction of its period.
+/// The verdict on a regression that loses a state, and the reason: one that does not move by a constant, or an angle
+/// that moves by a fraction of its period.
 pub(super) fn steps(
     premises: &Premises<'_>,
     eta: &[Expr],
