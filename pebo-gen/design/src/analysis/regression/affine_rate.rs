@@ -19,7 +19,7 @@ pub(super) fn equation(
     (primitive, rate): (Expr, Expr),
     outputs: Vec<usize>,
 ) -> Result<Option<Equation>, Obstacle> {
-    let (arena, domain) = (premises.arena(), premises.domain);
+    let arena = premises.arena();
     let first = outputs.first().map(|output| premises.plant.y[*output].symbol);
     let Some(row) = decompose(premises, first, rate)? else { return Ok(None) };
     // The rate at the left inverse: where it is affine in z, the author's formula, whose slopes are the factors.
@@ -27,11 +27,10 @@ pub(super) fn equation(
     let written: Vec<Expr> = Some(written).into_iter().filter(|written| !premises.is_hidden(*written)).collect();
     let factor = |(factor, z): (&Expr, &Symbol)| {
         let slopes: Vec<Expr> = written.iter().map(|written| arena.derivative(*written, *z)).collect();
-        with_fewer_conditions(arena, domain, shortest_equal(arena, domain, *factor, &slopes), &slopes)
+        with_fewer_conditions(arena, premises.domain, *factor, &slopes)
     };
-    let factors: Vec<Expr> = row[1..].iter().zip(&premises.plant.z).map(factor).collect();
-    let in_z = arena.add(row[0], arena.dot(&factors, &premises.z()));
-    let in_z = in_authors_shape(premises, rate, in_z, &written);
+    let factors = row[1..].iter().zip(&premises.plant.z).map(factor).collect();
+    let in_z = in_authors_shape(premises, rate, premises.of_row(&row), &written);
     let none = vec![arena.zero(); premises.plant.z.len()];
     Ok(Some(Equation { primitive, rate: in_z, outputs, factors: Some([none, factors]) }))
 }
@@ -81,5 +80,12 @@ fn over_transform(premises: &Premises<'_>, output: Option<Symbol>, rate: Expr) -
     {
         return Ok(Some([&[*known], factors.as_slice()].concat()));
     }
-    affine::of(plant, premises.domain, rate)
+    let Some(mut row) = affine::of(plant, premises.domain, rate)? else { return Ok(None) };
+    // If the transform is the state itself, the author's own coefficients may be shorter.
+    for (factor, component) in row[1..].iter_mut().zip(&phi) {
+        if let Some(state) = arena.as_symbol(*component) {
+            *factor = shortest_equal(arena, premises.domain, *factor, &[arena.derivative(rate, state)]);
+        }
+    }
+    Ok(Some(row))
 }

@@ -109,7 +109,7 @@ fn in_functions(
     let recovered = recoverable(premises, separated);
     let (separated, recovered) = recovered.ok_or(Obstruction::Unrecovered(functions))?;
     let steps = steps(premises, &separated.eta, &recovered, found)
-        .map_err(|(verdict, said)| Obstruction::Refused(verdict, said))?;
+        .map_err(|verdict| Obstruction::Refused(verdict, std::mem::take(found)))?;
     let mut result = empty(premises, kind, equations, (separated.eta, Some(recovered.theta)));
     result.phi_0 = in_z.iter().zip(&separated.known).map(|(in_z, known)| as_written(premises, *in_z, *known)).collect();
     let short = |row: &Vec<Expr>| row.iter().map(|entry| premises.shortest(*entry)).collect();

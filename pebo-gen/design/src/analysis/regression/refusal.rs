@@ -151,13 +151,11 @@ fn of_rate(premises: &Premises<'_>, rate: &Rate, obstacle: Option<&Obstacle>) ->
         // The rate as a function of z is unknown: it may be linear with functions of z as factors or as unknowns.
         _ => Some(constant_components(premises).next().map_or(OtherForm::Unknown, OtherForm::Function)),
     };
-    match form {
-        Some(form) => not_in_other_forms(plant, rate, &point, form),
-        None => {
-            let summands = blame::summands(plant, index, |term| nonlinear(premises, term).is_some());
-            refuted(plant, index, &summands, &point)
-        }
-    }
+    let Some(form) = form else {
+        let summands = blame::summands(plant, index, |term| nonlinear(premises, term).is_some());
+        return refuted(plant, index, &summands, &point);
+    };
+    not_in_other_forms(plant, rate, &point, form)
 }
 
 /// A form in which the unknowns of a rate that is not affine, a function of z, may be linear all the same, if not all

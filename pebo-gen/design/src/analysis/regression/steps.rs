@@ -15,14 +15,14 @@ use pebo_cas::{Expr, Relation, Symbol};
 /// distinguish them from angles, which is a warning.
 ///
 /// # Errors
-/// The verdict on a regression that loses a state, and the reason: one that does not move by a constant, or an angle
-/// that moves by a fraction of its period.
+/// The verdict on a regression that loses a state: one that does not move by a constant, or an angle that moves by a
+/// fraction of its period.
 pub(super) fn steps(
     premises: &Premises<'_>,
     eta: &[Expr],
     recovered: &ThetaRecovery,
     found: &mut Vec<Diagnostic>,
-) -> Result<Vec<(Symbol, Expr)>, (Verdict, Vec<Diagnostic>)> {
+) -> Result<Vec<(Symbol, Expr)>, Verdict> {
     let (arena, plant, domain) = (premises.arena(), premises.plant, premises.domain);
     let mut steps = Vec::new();
     for &(index, step) in &recovered.turning {
@@ -52,8 +52,8 @@ pub(super) fn steps(
                 steps.push((state, shift));
                 continue;
             }
-            let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
-            return Err((verdict, vec![lost_by_turns(plant, (index, step), (state, shift), blind)]));
+            found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
+            return Err(if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided });
         }
     }
     Ok(steps)
