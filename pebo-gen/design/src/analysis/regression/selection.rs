@@ -98,6 +98,7 @@ impl Source {
     fn equations(self, pool: &Pool<'_>, given: Option<&Trial>, rest: &OnceCell<Rest>) -> Vec<Equation> {
         let plant = pool.premises.plant;
         let has_identities = !plant.identities.is_empty();
+        let is_generalised = pool.premises.cascade.lambda.is_some();
         let is_open = |given: Option<&Trial>| match given {
             Some(given) => has_identities && given.identifiability.verdict == Verdict::Refuted,
             None if has_identities && pool.curved().next().is_some() => true,
@@ -112,9 +113,9 @@ impl Source {
                 let outputs: Vec<usize> = pool.rates.iter().map(|rate| rate.output).collect();
                 pool.combinations(&outputs).into_iter().collect::<Option<_>>().unwrap_or_default()
             }
-            (OfStates, given) if is_open(given) => {
+            (OfStates, given) if is_open(given) && (is_generalised || pool.premises.left_inverse.is_some()) => {
                 // Under a generalised cascade there are no functions of theta.
-                let is_usable = |e: &&Equation| e.is_linear() || pool.premises.cascade.lambda.is_none();
+                let is_usable = |e: &&Equation| e.is_linear() || !is_generalised;
                 pool.of_states().iter().filter(is_usable).cloned().collect()
             }
             (AffineCombinations, None) if pool.curved().next().is_some() => {
