@@ -7,13 +7,11 @@ use pebo_cas::{Domain, Expr, Relation};
 
 use super::advice::remarks::Remarks;
 use super::conditions::{Conditions, DomainCondition};
-use super::design::{
-    Cascade, Claim, Class, Derivation, Identifiability, LeftInverse, Outcome, Regression, UnusedOutput, UnusedReason,
-    Verdict,
-};
+use super::design::{Cascade, Claim, Class, Derivation, Outcome, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
-use super::{cascade, forms, identifiability, identities, left_inverse, permitted, regression};
+use super::regression::{self, Premises};
+use super::{cascade, identities, left_inverse, permitted};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
@@ -37,7 +35,8 @@ impl Derivation {
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
         let (mut regression, mut identifiability) = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
-                regressed(plant, &domain, (class, result, inverse), &mut found)
+                let premises = Premises { plant, domain: &domain, class, cascade: result, left_inverse: inverse };
+                regression::prove(premises, &mut found)
             }
             _ => (Claim::skipped(), Claim::skipped()),
         };
@@ -128,51 +127,6 @@ impl Outcome {
     }
 }
 
-/// The codes that a stronger regression settles.
-const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
-
-/// The claims for unknowns that a regression does not identify, by all other equations of the plant; none if there are
-/// no others.
-fn strengthened(
-    plant: &Plant,
-    domain: &Domain,
-    (cascade, inverse): (&Cascade, Option<&LeftInverse>),
-    (regression, verdict): (&Regression, Verdict),
-    found: &mut Vec<Diagnostic>,
-) -> Option<(Claim<Regression>, Claim<Identifiability>)> {
-    let mut said = Vec::new();
-    let combined = regression::combined(plant, domain, cascade, inverse, regression, &mut said);
-    let mut last = None;
-    let class = if cascade.lambda.is_some() { Class::Gpebo } else { Class::Pebo };
-    for claim in combined.regressions {
-        let claim = permitted::regression(plant, class, claim, &mut said);
-        let Some(more) = claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved) else { continue };
-        let mut others = Vec::new();
-        let identifiability = identifiability::prove(plant, domain, cascade, more, inverse, &mut others);
-        let proved = identifiability.verdict == Verdict::Proved;
-        last = Some((claim, identifiability, others));
-        if proved {
-            break;
-        }
-    }
-    if let Some((claim, identifiability, others)) = last {
-        let said_more =
-            verdict == Verdict::Refuted && (identifiability.verdict == Verdict::Undecided || combined.complete);
-        if identifiability.verdict == Verdict::Proved || said_more {
-            found.retain(|d| !OPEN.contains(&d.code));
-            found.extend(said.into_iter().chain(others));
-            return Some((claim, identifiability));
-        }
-    }
-    if combined.complete || verdict == Verdict::Undecided {
-        return None;
-    }
-    found.retain(|d| !OPEN.contains(&d.code));
-    found.push(identifiability::not_all_used(plant));
-    let claim = Claim { verdict: Verdict::Proved, result: Some(regression.clone()) };
-    Some((claim, Claim { verdict: Verdict::Undecided, result: None }))
-}
-
 impl<T> Claim<T> {
     pub(super) fn skipped() -> Self {
         Self { verdict: Verdict::Skipped, result: None }
@@ -203,137 +157,6 @@ fn outcome(verdicts: &[Verdict]) -> Outcome {
     } else {
         Outcome::Undecided
     }
-}
-
-/// The claims on regression and identifiability under a proved cascade: with the first form of the regression that
-/// identifies the unknowns, or with the form that the author chose.
-fn regressed(
-    plant: &Plant,
-    domain: &Domain,
-    claims: (Class, &Cascade, Option<&LeftInverse>),
-    found: &mut Vec<Diagnostic>,
-) -> (Claim<Regression>, Claim<Identifiability>) {
-    let (class, cascade, inverse) = claims;
-    let before = found.len();
-    let regression = limited(plant, "the regression", found, |found| {
-        let claim = regression::prove(plant, domain, cascade, inverse, found);
-        permitted::regression(plant, class, claim, found)
-    });
-    let identifiability = match &regression.result {
-        Some(result) if regression.verdict == Verdict::Proved => limited(plant, "identifiability", found, |found| {
-            identifiability::prove(plant, domain, cascade, result, inverse, found)
-        }),
-        _ => Claim::skipped(),
-    };
-    let given = forms::preferred(plant, domain, claims, (regression, identifiability), found, before);
-    let given = from_identities(plant, domain, claims, given, found);
-    let mut given = without_others(plant, domain, claims, given, found, before);
-    if let Some(result) = &given.0.result
-        && matches!(given.1.verdict, Verdict::Refuted | Verdict::Undecided)
-        && !plant.arena.budget().is_exhausted()
-        && let Some(more) = strengthened(plant, domain, (cascade, inverse), (result, given.1.verdict), found)
-    {
-        given = more;
-    }
-    let given = with_all_outputs(plant, domain, claims, given, found, before);
-    forms::static_form(plant, domain, claims, given, found, before)
-}
-
-/// The claims with each output by the equation that says most, where that takes no excitation that the given ones do
-/// not need; else the given. A rate that identifies at once what its value identifies over time says nothing more: it
-/// counts the value's noise twice, and not what disturbs the value.
-/// Of the diagnostics, those from `before` on are of these claims.
-fn with_all_outputs(
-    plant: &Plant,
-    domain: &Domain,
-    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
-    mut given: (Claim<Regression>, Claim<Identifiability>),
-    found: &mut Vec<Diagnostic>,
-    before: usize,
-) -> (Claim<Regression>, Claim<Identifiability>) {
-    let Some(regression) = given.0.result.as_ref().filter(|_| given.1.verdict == Verdict::Proved) else { return given };
-    let mut said = Vec::new();
-    let mut choice = regression::with_all_outputs(plant, domain, cascade, inverse, regression, &mut said);
-    for claim in choice.regressions {
-        let mut others = said.clone();
-        let both = forms::proved(plant, domain, (class, cascade, inverse), claim, &mut others);
-        let both = both.filter(|both| !forms::at_once(&given.1) || forms::by_itself(&both.1));
-        if let Some((mut claim, identified)) = both {
-            if let Some(result) = &mut claim.result {
-                result.unused = choice.unused;
-            }
-            found.truncate(before);
-            found.extend(others);
-            return (claim, identified);
-        }
-    }
-    let unproved = |output| UnusedOutput { output, reason: UnusedReason::Unproved };
-    choice.unused.extend(choice.added.into_iter().map(unproved));
-    if let Some(result) = &mut given.0.result {
-        result.unused = choice.unused;
-    }
-    given
-}
-
-/// The claims without a rate that has no usable form: with rates affine in phi, or functions of theta; else the given.
-fn without_others(
-    plant: &Plant,
-    domain: &Domain,
-    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
-    given: (Claim<Regression>, Claim<Identifiability>),
-    found: &mut Vec<Diagnostic>,
-    before: usize,
-) -> (Claim<Regression>, Claim<Identifiability>) {
-    let is_given = given.0.verdict == Verdict::Proved || plant.relation_form.is_some();
-    if is_given || plant.arena.budget().is_exhausted() {
-        return given;
-    }
-    for affine in [true, false] {
-        let mut said = Vec::new();
-        let other = if affine {
-            regression::of_affine_rates(plant, domain, cascade, inverse)
-        } else {
-            regression::of_separable_rates(plant, domain, cascade, inverse, &mut said)
-        };
-        let both = other.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut said));
-        if let Some(both) = both {
-            found.truncate(before);
-            found.extend(said);
-            return both;
-        }
-    }
-    given
-}
-
-/// The claims from identities, where the outputs' rates, or functions of theta, do not identify the unknowns; else the
-/// given.
-fn from_identities(
-    plant: &Plant,
-    domain: &Domain,
-    (class, cascade, inverse): (Class, &Cascade, Option<&LeftInverse>),
-    given: (Claim<Regression>, Claim<Identifiability>),
-    found: &mut Vec<Diagnostic>,
-) -> (Claim<Regression>, Claim<Identifiability>) {
-    let is_open = [Verdict::Refuted, Verdict::Undecided].contains(&given.1.verdict);
-    if !is_open || plant.identities.is_empty() || plant.arena.budget().is_exhausted() {
-        return given;
-    }
-    for affine in [true, false] {
-        let mut others = Vec::new();
-        let other = if affine {
-            regression::from_affine_identities(plant, domain, cascade, inverse, &mut others)
-        } else {
-            let is_other = given.1.verdict == Verdict::Refuted;
-            is_other.then(|| regression::from_identities(plant, domain, cascade, inverse, &mut others))
-        };
-        let both = other.and_then(|other| forms::proved(plant, domain, (class, cascade, inverse), other, &mut others));
-        if let Some(both) = both {
-            found.retain(|d| !OPEN.contains(&d.code));
-            found.extend(others);
-            return both;
-        }
-    }
-    given
 }
 
 /// Formulas that have no value where the claim is made.

@@ -26,7 +26,6 @@ mod cascade;
 mod conditions;
 mod derive;
 mod design;
-mod forms;
 mod identifiability;
 mod identities;
 mod left_inverse;

@@ -1,21 +1,19 @@
-//! Combinations of outputs from whose rates the unmeasured signals cancel.
+//! Combinations of outputs whose rates lose what no regression can use: unmeasured signals, or terms that are not
+//! affine in phi.
 
 use std::collections::BTreeSet;
 
-use crate::plant::Plant;
-use crate::plant::matrix::dot;
-use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::tidy::shortest;
+use super::premises::Premises;
 use pebo_cas::linear::comparison::{cancelling, relations};
 use pebo_cas::linear::pivots::pivots;
 use pebo_cas::number::interval::{Interval, Precision};
-use pebo_cas::tower::{Field, Obstacle};
-use pebo_cas::{Domain, Expr, Symbol};
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::{Expr, Symbol};
 
 /// Points at which a rank is looked for.
 const MOST_POINTS: usize = 8;
 
-/// A combination of outputs with a rate that is free of unmeasured signals.
+/// A combination of outputs with constant coefficients.
 pub(super) struct Combination {
     /// The combination.
     pub(super) output: Expr,
@@ -25,100 +23,84 @@ pub(super) struct Combination {
     pub(super) outputs: Vec<usize>,
 }
 
-/// The outputs with a rate, but for some.
-pub(super) fn outputs_but(plant: &Plant, used: &[usize]) -> Vec<usize> {
-    (0..plant.y.len()).filter(|index| plant.y[*index].rate.is_some() && !used.contains(index)).collect()
-}
-
-/// Combinations with constant coefficients in whose rates no unmeasured signal occurs, as many as were found.
-///
-/// A coefficient that moves would bring in its own rate; such combinations are left out.
-pub(super) fn combinations(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Vec<Combination> {
-    found(plant, domain, outputs).unwrap_or_default()
-}
-
-fn found(plant: &Plant, domain: &Domain, outputs: &[usize]) -> Result<Vec<Combination>, Obstacle> {
-    let arena = &plant.arena;
-    let unmeasured: BTreeSet<Symbol> = plant.w.iter().copied().collect();
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let rates = rates(plant, outputs);
-    let part_of = |factors: &[Expr]| -> Vec<usize> {
-        outputs.iter().zip(factors).filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| *output).collect()
+/// Combinations in whose rates no unmeasured signal occurs, as many as were found.
+pub(super) fn unmoved(premises: &Premises<'_>, outputs: &[usize]) -> Vec<Combination> {
+    let unmeasured: BTreeSet<Symbol> = premises.plant.w.iter().copied().collect();
+    let rates = rates(premises, outputs);
+    let found = || {
+        let field = Field::over(premises.arena(), &premises.domain.facts, &rates)?;
+        let vectors = cancelling(&field, &rates, &premises.plant.hidden(), &unmeasured)?;
+        combined(premises, &field, (outputs, &rates), &vectors)
     };
-    let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
-    let field = Field::over(arena, &domain.facts, &rates)?;
+    let mut found: Vec<Combination> = found().unwrap_or_default().into_iter().flatten().collect();
+    found.retain(|combination| !premises.is_moved(combination.rate));
+    found
+}
+
+/// Combinations of rates that are affine in phi, as many as were found; and whether there are others, with coefficients
+/// that move.
+pub(super) fn affine(premises: &Premises<'_>, outputs: &[usize]) -> Result<(Vec<Combination>, bool), Obstacle> {
+    let rates = rates(premises, outputs);
+    // The rates come last, so that each relation has one rate of its own, and of the others only their terms that are
+    // not affine.
+    let basis = [&[premises.arena().one()], premises.plant.transform().as_slice(), &rates].concat();
+    let field = Field::over(premises.arena(), &premises.domain.facts, &basis)?;
+    let vectors = relations(&field, &basis, &premises.plant.hidden())?.into_iter();
+    let mut of_rates: Vec<Vec<Fraction>> = vectors.map(|mut v| v.split_off(basis.len() - rates.len())).collect();
+    of_rates.retain(|vector| vector.iter().any(|entry| !entry.is_zero()));
+    let found = combined(premises, &field, (outputs, &rates), &of_rates)?;
+    let moving = found.iter().any(Option::is_none);
+    Ok((found.into_iter().flatten().collect(), moving))
+}
+
+/// The combinations with these coefficients, scaled by the first one; none for coefficients that move: these would bring
+/// in their own rates.
+fn combined(
+    premises: &Premises<'_>,
+    field: &Field<'_>,
+    (outputs, rates): (&[usize], &[Expr]),
+    vectors: &[Vec<Fraction>],
+) -> Result<Vec<Option<Combination>>, Obstacle> {
+    let (arena, constants) = (premises.arena(), premises.constants());
+    let symbols: Vec<Expr> = outputs.iter().map(|output| premises.output(*output)).collect();
     let mut found = Vec::new();
-    for vector in cancelling(&field, &rates, &plant.hidden(), &unmeasured)? {
-        for pivot in vector.iter().filter(|entry| !entry.is_zero()) {
-            let scaled = vector.iter().map(|entry| field.div(entry, pivot)).collect::<Result<Vec<_>, _>>()?;
-            let scaled: Vec<Expr> = scaled.iter().map(|entry| field.show(entry)).collect();
-            if !arena.symbols_of(&scaled).is_subset(&constants) {
-                continue;
-            }
-            let whole = dot(arena, &scaled, &rates);
-            let rate = shortest(arena, domain, whole);
-            if !arena.depends_on(rate, &unmeasured) && decide(arena, arena.sub(whole, rate), domain).is_zero() {
-                found.push(Combination { output: dot(arena, &scaled, &symbols), rate, outputs: part_of(&scaled) });
-                break;
-            }
-        }
+    for vector in vectors {
+        let Some(pivot) = vector.iter().find(|entry| !entry.is_zero()) else { continue };
+        let scaled = vector.iter().map(|entry| field.div(entry, pivot)).collect::<Result<Vec<_>, _>>()?;
+        let scaled: Vec<Expr> = scaled.iter().map(|entry| field.show(entry)).collect();
+        let is_constant = arena.symbols_of(&scaled).is_subset(&constants);
+        let (whole, of_output) = (arena.dot(&scaled, rates), outputs.iter().copied().zip(&scaled));
+        let rate = premises.shortest(whole);
+        found.push((is_constant && premises.are_equal(whole, rate)).then(|| Combination {
+            output: arena.dot(&scaled, &symbols),
+            rate,
+            outputs: of_output.filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| output).collect(),
+        }));
     }
     Ok(found)
 }
 
-/// Combinations with constant coefficients of rates that are not affine in phi which are affine, as many as were found;
-/// and whether there are others, with coefficients that move.
-pub(super) fn affine_combinations(
-    plant: &Plant,
-    domain: &Domain,
-    outputs: &[usize],
-) -> Result<(Vec<Combination>, bool), Obstacle> {
-    let arena = &plant.arena;
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let rates = rates(plant, outputs);
-    let part_of = |factors: &[Expr]| -> Vec<usize> {
-        outputs.iter().zip(factors).filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| *output).collect()
-    };
-    let symbols: Vec<Expr> = outputs.iter().map(|index| arena.of_symbol(plant.y[*index].symbol)).collect();
-    // The rates come last, so that each relation has one rate of its own, and of the others only their terms that are
-    // not affine.
-    let basis = [&[arena.one()], plant.transform().as_slice(), &rates].concat();
-    let field = Field::over(arena, &domain.facts, &basis)?;
-    let (mut found, mut moving) = (Vec::new(), false);
-    for vector in relations(&field, &basis, &plant.hidden())? {
-        let of_rates = &vector[basis.len() - rates.len()..];
-        let Some(pivot) = of_rates.iter().rfind(|entry| !entry.is_zero()) else { continue };
-        let scaled = of_rates.iter().map(|entry| field.div(entry, pivot)).collect::<Result<Vec<_>, _>>()?;
-        let scaled: Vec<Expr> = scaled.iter().map(|entry| field.show(entry)).collect();
-        if !arena.symbols_of(&scaled).is_subset(&constants) {
-            moving = true;
-            continue;
-        }
-        let rate = shortest(arena, domain, dot(arena, &scaled, &rates));
-        found.push(Combination { output: dot(arena, &scaled, &symbols), rate, outputs: part_of(&scaled) });
-    }
-    Ok((found, moving))
-}
-
 /// Tests whether at a point of the domain the unmeasured signals move these rates freely, up to so many combinations:
 /// whatever the states are, values of these signals explain the rates, so that they do not determine the states.
-pub(super) fn moved_freely(plant: &Plant, domain: &Domain, outputs: &[usize], but: usize) -> bool {
+pub(super) fn moved_freely(premises: &Premises<'_>, outputs: &[usize], but: usize) -> bool {
     const PRECISION: Precision = Precision::new(128);
-    let arena = &plant.arena;
-    let rates = rates(plant, outputs);
-    let slopes: Vec<Expr> = plant.w.iter().flat_map(|w| rates.iter().map(|rate| arena.derivative(*rate, *w))).collect();
+    let arena = premises.arena();
+    let rates = rates(premises, outputs);
+    let of_signal = |w: &Symbol| rates.iter().map(|rate| arena.derivative(*rate, *w)).collect::<Vec<Expr>>();
+    let slopes: Vec<Expr> = premises.plant.w.iter().flat_map(of_signal).collect();
     let columns = rates.len();
     let free = |values: Vec<Interval>| {
         let rows = values.chunks(columns).map(<[Interval]>::to_vec).collect();
         pivots(rows, columns, PRECISION, arena.budget()).is_some_and(|chosen| chosen.len() + but >= columns)
     };
     columns == 0
-        || domain
+        || premises
+            .domain
             .points(arena, &[slopes.as_slice(), &rates].concat())
             .take(MOST_POINTS)
             .any(|point| arena.enclose_all(&slopes, &point, PRECISION).is_some_and(free))
 }
 
-fn rates(plant: &Plant, outputs: &[usize]) -> Vec<Expr> {
-    outputs.iter().filter_map(|index| plant.y[*index].rate.map(|rate| rate.expr)).collect()
+fn rates(premises: &Premises<'_>, outputs: &[usize]) -> Vec<Expr> {
+    outputs.iter().filter_map(|index| premises.plant.y[*index].rate.map(|rate| rate.expr)).collect()
 }

@@ -6,20 +6,20 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::equation::{self, outputs_of};
-use super::separation;
-use crate::analysis::affine;
-use crate::analysis::design::LeftInverse;
+use super::equation::{Equation, outputs_of};
+use super::premises::Premises;
+use super::separation::is_separable;
+use crate::analysis::affine::{self, Row};
 use crate::plant::Plant;
-use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::opaque::OpaqueTerms;
-use pebo_cas::solve::{Equation, cleared, solve};
+use pebo_cas::solve::{self, cleared, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Node, Symbol};
 
 /// Affine functions of the transform that vanish by an identity; none where no form of it is one.
-pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec<affine::Row>, Obstacle> {
+pub(super) fn rows(premises: &Premises<'_>, identity: Expr) -> Result<Vec<Row>, Obstacle> {
+    let (plant, domain) = (premises.plant, premises.domain);
     // On its own manifold an identity says 0 = 0: its equation in z is found elsewhere.
     let everywhere = domain.without_equations();
     let written = affine::of(plant, &everywhere, identity);
@@ -27,16 +27,24 @@ pub(super) fn rows(plant: &Plant, domain: &Domain, identity: Expr) -> Result<Vec
         return Ok(vec![row]);
     }
     let affine = |form| as_written(plant, &everywhere, form).or_else(|| affine::of(plant, &everywhere, form).ok()?);
-    let by_others = with_other_values(plant, domain, identity);
-    if let Some(row) = forms(plant, domain, identity).into_iter().chain(by_others).find_map(affine) {
+    let by_others = with_other_values(premises, identity);
+    if let Some(row) = forms(premises, identity).into_iter().chain(by_others).find_map(affine) {
         return Ok(vec![row]);
     }
-    let components: Vec<affine::Row> = components(plant, domain, identity).into_iter().filter_map(affine).collect();
+    let components: Vec<Row> = components(premises, identity).into_iter().filter_map(affine).collect();
     if components.is_empty() { written.map(|_| components) } else { Ok(components) }
 }
 
+/// The equation of an output's value, if that is linear in z and depends on it.
+pub(super) fn value(premises: &Premises<'_>, output: usize) -> Option<Equation> {
+    let value = premises.plant.y[output].value?.expr;
+    let rows = rows(premises, premises.arena().sub(premises.output(output), value)).ok()?;
+    let row = rows.into_iter().find(|row| row[1..].iter().any(|factor| !premises.arena().is_zero(*factor)))?;
+    Some(Equation::instant(premises, premises.of_row(&row), vec![output]))
+}
+
 /// A form over the transform, terms free of x left as written.
-fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::Row> {
+fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<Row> {
     let hidden = plant.hidden();
     let mut frozen = OpaqueTerms::new(&plant.arena, &hidden);
     let form = frozen.replace(&[form])[0];
@@ -45,51 +53,56 @@ fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<affine::
 }
 
 /// The identities as equations between z, y and u: in a form that is affine in z, else in one with separable terms,
-/// else as written.
-pub(super) fn in_z(plant: &Plant, domain: &Domain, left_inverse: &LeftInverse) -> Vec<equation::Equation> {
-    let arena = &plant.arena;
-    let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-    let of = |identity: Expr| {
-        let written = arena.substitute(identity, &inverse);
-        let everywhere = domain.without_equations();
-        let is_affine = |form: Expr| matches!(affine::of(plant, &everywhere, form), Ok(Some(_)));
-        if let Some(linear) = with_other_values(plant, domain, identity).filter(|form| is_affine(*form))
-            && !is_affine(identity)
-        {
-            return vec![arena.substitute(linear, &inverse)];
-        }
-        let separable = |form: &Expr| matches!(separation::separate(plant, domain, &[*form]), Ok(Some(_)));
-        if separable(&written) {
-            return vec![written];
-        }
-        match rows(plant, domain, identity) {
-            Ok(rows) if !rows.is_empty() => {
-                rows.iter().map(|row| arena.add(row[0], dot(arena, &row[1..], &z))).collect()
-            }
-            _ => {
-                let others = forms(plant, domain, identity).into_iter().map(|form| arena.substitute(form, &inverse));
-                vec![others.into_iter().find(separable).unwrap_or(written)]
-            }
-        }
-    };
-    let mut found: Vec<equation::Equation> = Vec::new();
-    for identity in &plant.identities {
-        for rate in of(identity.expr) {
+/// else as written; without a left inverse, those that are affine.
+pub(super) fn in_z(premises: &Premises<'_>) -> Vec<Equation> {
+    let arena = premises.arena();
+    let mut found: Vec<Equation> = Vec::new();
+    for identity in &premises.plant.identities {
+        for rate in forms_in_z(premises, identity.expr) {
             // A bearing under `g_y` and the same written as an identity.
+            let outputs = outputs_of(premises.plant, identity);
             match found.iter_mut().find(|known| known.rate == rate || known.rate == arena.neg(rate)) {
-                Some(known) => known.outputs.extend(outputs_of(plant, identity)),
-                None => found.push(equation::Equation::instant(arena, rate, outputs_of(plant, identity))),
+                Some(known) => known.outputs.extend(outputs),
+                None => found.push(Equation::instant(premises, rate, outputs)),
             }
         }
     }
     found
 }
 
+fn forms_in_z(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
+    let in_z = |form: Expr| premises.at_left_inverse(form).unwrap_or(form);
+    let linear = || {
+        let rows = rows(premises, identity).unwrap_or_default();
+        rows.iter().map(|row| premises.of_row(row)).collect::<Vec<Expr>>()
+    };
+    let written = in_z(identity);
+    if premises.cascade.lambda.is_some() || premises.left_inverse.is_none() {
+        // Functions of theta are of no use here.
+        if !premises.is_hidden(written) && premises.row(written).is_some() {
+            return vec![written];
+        }
+        return Some(linear()).filter(|forms| !forms.is_empty()).unwrap_or_else(|| vec![written]);
+    }
+    let everywhere = premises.domain.without_equations();
+    let is_affine = |form: Expr| matches!(affine::of(premises.plant, &everywhere, form), Ok(Some(_)));
+    if let Some(form) = with_other_values(premises, identity).filter(|form| is_affine(*form))
+        && !is_affine(identity)
+    {
+        return vec![in_z(form)];
+    }
+    let separable = |form: &Expr| is_separable(premises, *form);
+    if separable(&written) {
+        return vec![written];
+    }
+    Some(linear())
+        .filter(|forms| !forms.is_empty())
+        .unwrap_or_else(|| vec![forms(premises, identity).into_iter().map(in_z).find(separable).unwrap_or(written)])
+}
+
 /// An identity with the states that the other equations give: `c = a*b` is linear where an output is b.
-fn with_other_values(plant: &Plant, domain: &Domain, identity: Expr) -> Option<Expr> {
-    let arena = &plant.arena;
-    let hidden = plant.hidden();
+fn with_other_values(premises: &Premises<'_>, identity: Expr) -> Option<Expr> {
+    let (arena, domain, hidden) = (premises.arena(), premises.domain, premises.plant.hidden());
     let others = domain.manifold.equations().iter().copied().filter(|other| *other != identity).collect();
     let mut values = domain.manifold.of(arena, &domain.facts, others).determined();
     values.retain(|symbol, value| hidden.contains(symbol) && !arena.depends_on(*value, &hidden));
@@ -98,12 +111,11 @@ fn with_other_values(plant: &Plant, domain: &Domain, identity: Expr) -> Option<E
 }
 
 /// The components of the transform that are functions of a state given by an identity, each less its value.
-fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
-    let arena = &plant.arena;
-    let hidden = plant.hidden();
+fn components(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
+    let (arena, plant, domain, hidden) = (premises.arena(), premises.plant, premises.domain, premises.plant.hidden());
     let states: Vec<Symbol> = arena.symbols_of(&[identity]).intersection(&hidden).copied().collect();
-    let ([state], Some(value)) = (states.as_slice(), value(plant, identity)) else { return Vec::new() };
-    let equation = Equation { formula: identity, value: arena.zero() };
+    let ([state], Some(value)) = (states.as_slice(), output_value(plant, identity)) else { return Vec::new() };
+    let equation = solve::Equation { formula: identity, value: arena.zero() };
     let known = solve(arena, domain, &[equation], &[*state]).unwrap_or_default().remove(state).unwrap_or_default();
     let is_the_state = |known: &Expr| {
         let error = arena.sub(arena.substitute(*known, &value), arena.of_symbol(*state));
@@ -117,19 +129,19 @@ fn components(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
 }
 
 /// Other forms of an identity, each proved.
-fn forms(plant: &Plant, domain: &Domain, identity: Expr) -> Vec<Expr> {
-    let arena = &plant.arena;
-    let value = value(plant, identity);
-    let mut forms = cleared(arena, domain, identity, &plant.hidden());
+fn forms(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
+    let (arena, domain) = (premises.arena(), premises.domain);
+    let value = output_value(premises.plant, identity);
+    let mut forms = cleared(arena, domain, identity, &premises.plant.hidden());
     forms.retain(|form| match &value {
         Some(value) => decide(arena, arena.substitute(*form, value), &domain.without_equations()).is_zero(),
-        None => decide(arena, *form, domain).is_zero(),
+        None => premises.vanishes(*form),
     });
     forms
 }
 
 /// An output as a function given by an identity, where it is one term of the identity.
-fn value(plant: &Plant, identity: Expr) -> Option<BTreeMap<Symbol, Expr>> {
+fn output_value(plant: &Plant, identity: Expr) -> Option<BTreeMap<Symbol, Expr>> {
     let arena = &plant.arena;
     let Node::Sum(sum) = arena.node(identity) else { return None };
     plant.y.iter().find_map(|output| {

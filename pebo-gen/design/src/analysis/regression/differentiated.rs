@@ -12,95 +12,22 @@
 //! motor's fluxes lie on a circle, `|z - L i|^2 = lambda_m^2` (Ortega et al. 2015, eq. 28): `d/dt (L i.z - L^2 |i|^2/2)
 //! = z.h`.
 
-use std::collections::BTreeSet;
-
-use super::combined::joined;
-use super::equation::{Equation, velocity};
-use super::{cleared, relations};
-use crate::analysis::design::{Cascade, Claim, LeftInverse, Regression, RegressionKind, Verdict};
-use crate::plant::{Plant, RelationForm};
-use crate::source::{Code, Diagnostic, Span};
+use super::equation::Equation;
+use super::premises::Premises;
+use pebo_cas::Expr;
 use pebo_cas::domain::zero::point_of;
-use pebo_cas::forms::tidy::shortest;
 use pebo_cas::number::rational::half;
-use pebo_cas::{Domain, Expr, Symbol};
-
-/// The regression under the derivative, in theta itself, where it has fewer unknowns than the given one, or the model
-/// chooses it.
-pub(in crate::analysis) fn differentiated(
-    plant: &Plant,
-    domain: &Domain,
-    cascade: &Cascade,
-    left_inverse: Option<&LeftInverse>,
-    given: &Claim<Regression>,
-) -> Option<Claim<Regression>> {
-    let wanted = plant.wants(RelationForm::Differentiated);
-    let longer = |g: &Regression| g.kind == RegressionKind::Static && g.eta.len() > plant.theta.len();
-    if !wanted && !proved(given).is_none_or(longer) {
-        return None;
-    }
-    let relations = if !plant.identities.is_empty() {
-        cleared::in_z(plant, domain, left_inverse?)
-    } else if relations::possible(plant, domain) {
-        let relations = relations::among(plant, domain).ok()?;
-        relations.into_iter().map(|rate| Equation::relation(plant, rate)).collect()
-    } else {
-        return None;
-    };
-    let equations = relations.into_iter().filter_map(|relation| under_derivative(plant, domain, cascade, relation));
-    let equations: Vec<Equation> = equations.collect();
-    if equations.is_empty() {
-        return None;
-    }
-    joined(plant, domain, cascade, left_inverse, &equations, &mut Vec::new())
-        .filter(|claim| proved(claim).is_some_and(|regression| regression.is_linear(plant)))
-}
-
-/// Reports that no regression has the chosen form.
-pub(in crate::analysis) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
-    let (how, needs, other) = match form {
-        RelationForm::Static => (
-            "from a relation among the components of phi as it holds at every instant",
-            "it needs an output that is given by its value (`g_y`), an identity, or components of phi that outputs and \
-             parameters relate",
-            "differentiated",
-        ),
-        RelationForm::Differentiated => (
-            "by differentiating a relation among the components of phi",
-            "it needs a relation of degree two in the components of phi, with constant coefficients at their products, \
-             whose derivative is affine in them",
-            "static",
-        ),
-    };
-    let message = format!("no identifiable regression was found {how}");
-    let diagnostic = Diagnostic::error(Code::RegressionUndecided, span, message)
-        .label(format!("`regression: {}` asks for one", form.name()))
-        .note(needs);
-    let about = plant.identities.first().map(|identity| (identity.span, "the identity"));
-    let about = about.or_else(|| Some((plant.phi.first()?.span, "phi")));
-    let diagnostic = about.into_iter().fold(diagnostic, |diagnostic, (span, what)| diagnostic.also(span, what));
-    diagnostic.help(format!("leave out `regression`, or write `regression: {other}`"))
-}
-
-fn proved(claim: &Claim<Regression>) -> Option<&Regression> {
-    claim.result.as_ref().filter(|_| claim.verdict == Verdict::Proved)
-}
 
 /// The equation that a relation becomes; none where squares have coefficients that move, or nothing moves at all.
-fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation: Equation) -> Option<Equation> {
-    let arena = &plant.arena;
-    let Equation { rate: relation, outputs, .. } = relation;
-    let z: Vec<Expr> = plant.z.iter().map(|s| arena.of_symbol(*s)).collect();
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let known: BTreeSet<Symbol> =
-        constants.iter().chain(&plant.z).copied().chain(plant.y.iter().map(|o| o.symbol)).collect();
-    let mut squares = Vec::new();
-    let mut rate = Vec::new();
-    let mut witness = None;
+pub(super) fn equation(premises: &Premises<'_>, relation: &Equation) -> Option<Equation> {
+    let (arena, plant, constants) = (premises.arena(), premises.plant, premises.constants());
+    let (z, of_outputs) = (premises.z(), plant.y.iter().map(|output| output.symbol));
+    let known = constants.iter().chain(&plant.z).copied().chain(of_outputs).collect();
+    let (mut squares, mut rate, mut witness) = (Vec::new(), Vec::new(), None);
     for (i, first) in plant.z.iter().enumerate() {
-        let slope = arena.derivative(relation, *first);
+        let slope = arena.derivative(relation.rate, *first);
         for (j, second) in plant.z.iter().enumerate() {
-            let curvature = shortest(arena, domain, arena.derivative(slope, *second));
+            let curvature = premises.shortest(arena.derivative(slope, *second));
             if !arena.symbols_of(&[curvature]).is_subset(&constants) {
                 return None;
             }
@@ -109,28 +36,27 @@ fn under_derivative(plant: &Plant, domain: &Domain, cascade: &Cascade, relation:
             }
             let curvature = arena.scale(curvature, &half());
             squares.push(arena.product([curvature, z[i], z[j]]));
-            rate.push(arena.product([curvature, z[j], velocity(plant, cascade, i)]));
+            rate.push(arena.product([curvature, z[j], premises.velocity(i)]));
         }
     }
-    let squares = arena.sum(squares);
-    let rest = arena.sub(relation, squares);
-    let primitive = shortest(arena, domain, arena.neg(arena.scale(without_constant(plant, domain, rest), &half())));
+    let rest = without_constant(premises, arena.sub(relation.rate, arena.sum(squares)));
+    let primitive = premises.shortest(arena.neg(arena.scale(rest, &half())));
     let rate = arena.sum(rate);
     // The relation is zero: a multiple of it takes the square away, and with it all others, if they are in proportion.
     let (curvature, first, second) = witness?;
     let multiple = arena.div(arena.derivative(arena.derivative(rate, first), second), curvature);
-    let rate = shortest(arena, domain, arena.sub(rate, arena.mul(multiple, relation)));
+    let rate = premises.shortest(arena.sub(rate, arena.mul(multiple, relation.rate)));
     let moves = !arena.is_zero(primitive) || !arena.is_zero(rate);
     // The rate of an input is not known.
-    (moves && arena.symbols_of(&[primitive]).is_subset(&known)).then_some(Equation { primitive, rate, outputs })
+    (moves && arena.symbols_of(&[primitive]).is_subset(&known))
+        .then(|| Equation::new(premises, primitive, rate, relation.outputs.clone()))
 }
 
 /// An expression less its value at z = 0 and y = 0, if it has a value there without an input: a constant has no rate.
-fn without_constant(plant: &Plant, domain: &Domain, expr: Expr) -> Expr {
-    let arena = &plant.arena;
+fn without_constant(premises: &Premises<'_>, expr: Expr) -> Expr {
+    let (arena, plant) = (premises.arena(), premises.plant);
     let signals = plant.z.iter().copied().chain(plant.y.iter().map(|output| output.symbol));
     let constant = arena.substitute(expr, &signals.map(|signal| (signal, arena.zero())).collect());
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
-    let is_constant = arena.symbols_of(&[constant]).is_subset(&constants);
-    if is_constant && point_of(arena, constant, domain).is_some() { arena.sub(expr, constant) } else { expr }
+    let is_constant = arena.symbols_of(&[constant]).is_subset(&premises.constants());
+    if is_constant && point_of(arena, constant, premises.domain).is_some() { arena.sub(expr, constant) } else { expr }
 }

@@ -1,28 +1,50 @@
 //! One equation of a regression, before theta is separated from known signals.
 
-use crate::analysis::design::Cascade;
+use super::premises::Premises;
 use crate::plant::{Formula, Output, Plant};
-use pebo_cas::{Arena, Expr};
+use pebo_cas::Expr;
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z. Without a primitive
 /// it is a relation that holds at every instant.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub(super) struct Equation {
     pub(super) primitive: Expr,
     pub(super) rate: Expr,
     /// Positions of the outputs whose equation it is.
     pub(super) outputs: Vec<usize>,
+    /// The factors of z in the primitive and in the rate, where both are affine in z.
+    pub(super) factors: Option<[Vec<Expr>; 2]>,
 }
 
 impl Equation {
-    /// A relation that holds at every instant, of these outputs.
-    pub(super) fn instant(arena: &Arena, rate: Expr, outputs: Vec<usize>) -> Self {
-        Self { primitive: arena.zero(), rate, outputs }
+    /// The equation, reduced to affine functions of z where it is made of these.
+    pub(super) fn new(premises: &Premises<'_>, primitive: Expr, rate: Expr, outputs: Vec<usize>) -> Self {
+        let factors = |expr| premises.row(expr).map(|row| row[1..].to_vec());
+        let factors = factors(primitive).and_then(|of_primitive| Some([of_primitive, factors(rate)?]));
+        Self { primitive, rate, outputs, factors }
     }
 
-    /// A relation that holds at every instant, of the outputs in it.
-    pub(super) fn relation(plant: &Plant, rate: Expr) -> Self {
-        Self::instant(&plant.arena, rate, outputs_in(plant, rate))
+    /// The rate of an output, known as this function of z that is not affine.
+    pub(super) fn curved(premises: &Premises<'_>, output: usize, in_z: Expr) -> Self {
+        Self { primitive: premises.output(output), rate: in_z, outputs: vec![output], factors: None }
+    }
+
+    /// A relation that holds at every instant, of these outputs.
+    pub(super) fn instant(premises: &Premises<'_>, rate: Expr, outputs: Vec<usize>) -> Self {
+        Self::new(premises, premises.arena().zero(), rate, outputs)
+    }
+
+    pub(super) fn is_instant(&self, premises: &Premises<'_>) -> bool {
+        premises.arena().is_zero(self.primitive)
+    }
+
+    pub(super) fn is_linear(&self) -> bool {
+        self.factors.is_some()
+    }
+
+    /// Tests whether it is the rate of one output.
+    pub(super) fn is_rate(&self, premises: &Premises<'_>) -> bool {
+        matches!(self.outputs.as_slice(), [output] if self.primitive == premises.output(*output))
     }
 }
 
@@ -39,12 +61,4 @@ pub(super) fn outputs_of(plant: &Plant, identity: &Formula) -> Vec<usize> {
         Some(position) => vec![position],
         None => outputs_in(plant, identity.expr),
     }
-}
-
-/// The rate of a component of the transform: `Lambda z + h`.
-pub(super) fn velocity(plant: &Plant, cascade: &Cascade, component: usize) -> Expr {
-    let arena = &plant.arena;
-    let own = cascade.lambda.iter().flat_map(|lambda| lambda[component].iter().zip(&plant.z));
-    let own = arena.sum(own.map(|(factor, z)| arena.mul(*factor, arena.of_symbol(*z))));
-    arena.add(own, cascade.h[component])
 }

@@ -1,36 +1,86 @@
-//! Refuses a regression, with the point that shows it.
+//! Refuses a regression: names what the pool of equations lacks, with the point that shows it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::analysis::design::{Claim, Comparison, LeftInverse, Regression, Verdict, Witness};
+use super::build::Obstruction;
+use super::cancelling::moved_freely;
+use super::diagnostics::{
+    OtherForm, in_functions, maybe_hidden, not_in_identity, not_in_other_forms, refuted, undecided, without_equations,
+};
+use super::pool::{Pool, Rate};
+use super::premises::Premises;
+use super::selection::{Part, Selection, Source};
+use super::separation::is_separable;
+use super::{cleared, implicit, separation};
+use crate::analysis::design::{Claim, Comparison, Regression, Verdict, Witness};
 use crate::analysis::{affine, blame};
-use crate::plant::{Formula, Plant};
-use crate::source::{Code, Diagnostic, Span, listed};
+use crate::plant::Formula;
+use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::zero::refute;
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr, Symbol};
+use pebo_cas::{Expr, Symbol};
 
-use super::cancelling::moved_freely;
-
-/// Every given rate depends on an unmeasured signal, and so do all combinations but so many, which gave no regression.
-pub(super) fn hidden_by_signals(
-    plant: &Plant,
-    domain: &Domain,
-    moved: &[(usize, Expr, Span)],
-    combined: usize,
+/// The verdict without a regression, by the selections that failed.
+pub(super) fn refused(
+    pool: &Pool<'_>,
+    failures: &[(Selection, Obstruction)],
     found: &mut Vec<Diagnostic>,
 ) -> Claim<Regression> {
-    let arena = &plant.arena;
-    let outputs: Vec<usize> = moved.iter().map(|row| row.0).collect();
-    if combined > 0 || !moved_freely(plant, domain, &outputs, 0) {
-        found.push(maybe_hidden(plant, &outputs, moved.first().map_or(Span::point(0), |row| row.2)));
-        return Claim { verdict: Verdict::Undecided, result: None };
+    let failure = |of: Source| Some(&failures.iter().find(|(selection, _)| *selection == (of, Part::Whole))?.1);
+    let has_rates = pool.unmoved().next().is_some();
+    let by_claim = failures.iter().find_map(|(selection, obstruction)| match obstruction {
+        Obstruction::Refused(verdict, said) if !has_rates || selection.0 != Source::OfStates => Some((verdict, said)),
+        _ => None,
+    });
+    let verdict = if let Some((verdict, said)) = by_claim {
+        found.extend(said.iter().cloned());
+        *verdict
+    } else if has_rates {
+        of_rates(pool, failure(Source::Rates), found)
+    } else if !pool.premises.plant.identities.is_empty() {
+        of_identities(&pool.premises, failure(Source::OfStates), found)
+    } else if pool.rates.is_empty() {
+        found.push(without_equations(pool.premises.plant));
+        Verdict::Refuted
+    } else {
+        of_moved_rates(pool, found)
+    };
+    Claim { verdict, result: None }
+}
+
+/// The identities make no regression.
+fn of_identities(premises: &Premises<'_>, failure: Option<&Obstruction>, found: &mut Vec<Diagnostic>) -> Verdict {
+    let plant = premises.plant;
+    let span = plant.identities[0].span;
+    let is_generalised = premises.cascade.lambda.is_some();
+    if !is_generalised && premises.left_inverse.is_none() {
+        return Verdict::Skipped;
+    }
+    let unreadable = || plant.identities.iter().find_map(|identity| cleared::rows(premises, identity.expr).err());
+    found.push(match failure {
+        Some(Obstruction::Unrecovered(_)) => undecided(plant, 0, span, &Obstacle::NoWitness),
+        Some(Obstruction::Open(obstacle)) => undecided(plant, 0, span, obstacle),
+        _ => match unreadable().filter(|_| is_generalised) {
+            Some(obstacle) => undecided(plant, plant.y.len(), span, &obstacle),
+            None => not_in_identity(span, is_generalised),
+        },
+    });
+    Verdict::Undecided
+}
+
+/// Every given rate depends on an unmeasured signal, and no combination gave a regression.
+fn of_moved_rates(pool: &Pool<'_>, found: &mut Vec<Diagnostic>) -> Verdict {
+    let (premises, plant, arena) = (&pool.premises, pool.premises.plant, pool.premises.arena());
+    let outputs: Vec<usize> = pool.rates.iter().map(|rate| rate.output).collect();
+    if !pool.combinations(&outputs).is_empty() || !moved_freely(premises, &outputs, 0) {
+        found.push(maybe_hidden(plant, &outputs, pool.rates.first().map_or(Span::point(0), |rate| rate.formula.span)));
+        return Verdict::Undecided;
     }
     let mut verdict = Verdict::Refuted;
-    for (index, rate, span) in moved {
+    for Rate { output: index, formula: Formula { expr: rate, span }, .. } in &pool.rates {
         let witness = plant.w.iter().find_map(|w| {
             let slope = arena.derivative(*rate, *w);
-            refute(arena, slope, domain).map(|point| (*w, Witness::of(slope, &point)))
+            refute(arena, slope, premises.domain).map(|point| (*w, Witness::of(slope, &point)))
         });
         let Some((signal, witness)) = witness else {
             verdict = Verdict::Undecided;
@@ -53,48 +103,93 @@ pub(super) fn hidden_by_signals(
             )),
         );
     }
-    Claim { verdict, result: None }
+    verdict
 }
 
-/// Outputs that unmeasured signals move, perhaps not in all combinations.
-fn maybe_hidden(plant: &Plant, outputs: &[usize], span: Span) -> Diagnostic {
-    let names: Vec<String> = outputs.iter().map(|index| plant.arena.name(plant.y[*index].symbol)).collect();
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        "it could not be decided whether the outputs determine the unknowns while unmeasured signals act on them",
-    )
-    .note(format!(
-        "no regression was found among the combinations of {} with constant coefficients that are free of these signals",
-        listed(names.iter().map(String::as_str))
-    ))
-    .help("give `f_y` for an output whose rate is free of the unmeasured signals, or an identity under `identities`")
+/// Reports the obstacle of each nonlinear rate; the verdict is the firmest that is left.
+fn of_rates(pool: &Pool<'_>, failure: Option<&Obstruction>, found: &mut Vec<Diagnostic>) -> Verdict {
+    let premises = &pool.premises;
+    let has_form = |rate: &Rate| rate.equation.iter().any(|equation| is_separable(premises, equation.rate));
+    let mut curved: Vec<&Rate> = pool.curved().collect();
+    // Rates that are no sums of functions of theta are the obstacles, if there are such.
+    if matches!(failure, Some(Obstruction::Inseparable)) && curved.iter().any(|rate| !has_form(rate)) {
+        curved.retain(|rate| !has_form(rate));
+    }
+    let in_z: Vec<Expr> = pool.unmoved().map(|equation| equation.rate).collect();
+    let is_generalised = premises.cascade.lambda.is_some();
+    let untried = if is_generalised { separation::separate(premises, &in_z) } else { Ok(None) };
+    // An identity may serve in place of the rates, in a form that was not found, or a combination that was not tried.
+    let (combined, moving) = pool.affine_combinations();
+    let is_refuted = premises.plant.identities.is_empty() && combined.len() <= pool.affine().count() && !moving;
+    let mut verdict = if is_refuted { Verdict::Refuted } else { Verdict::Undecided };
+    for rate in curved {
+        let obstacle = match (failure, &untried) {
+            (Some(Obstruction::Open(obstacle)), _) | (_, Err(obstacle)) => Some(obstacle),
+            _ => rate.obstacle.as_ref(),
+        };
+        let diagnostic = match failure {
+            _ if matches!(untried, Ok(Some(_))) => in_functions(premises.plant, rate, None),
+            Some(Obstruction::Unrecovered(eta)) => in_functions(premises.plant, rate, Some(eta)),
+            _ => of_rate(premises, rate, obstacle),
+        };
+        if diagnostic.code == Code::RegressionUndecided {
+            verdict = Verdict::Undecided;
+        }
+        found.push(diagnostic);
+    }
+    verdict
 }
 
-/// A generalised cascade whose outputs may be linear in functions of theta.
-pub(super) fn not_tried(plant: &Plant, index: usize, span: Span) -> Diagnostic {
-    let output = plant.arena.name(plant.y[index].symbol);
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether the rate of {output} is linear in functions of theta"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note("obstacle: for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for")
-    .help("choose a phi whose derivative is free of x, or one in which this rate is affine")
+/// A rate that is not affine, with the obstacle to a decision.
+fn of_rate(premises: &Premises<'_>, rate: &Rate, obstacle: Option<&Obstacle>) -> Diagnostic {
+    let (plant, index, span) = (premises.plant, rate.output, rate.formula.span);
+    // A rate that was given up is not refuted: it may be linear in functions of theta all the same.
+    let point = if obstacle.is_none() { nonlinear(premises, rate.formula.expr) } else { None };
+    let Some(point) = point else { return undecided(plant, index, span, obstacle.unwrap_or(&Obstacle::NoWitness)) };
+    let form = match &rate.equation {
+        Some(equation) if premises.left_inverse.is_some() => other_form(premises, equation.rate),
+        // The rate as a function of z is unknown: it may be linear with functions of z as factors or as unknowns.
+        _ => Some(constant_components(premises).next().map_or(OtherForm::Unknown, OtherForm::Function)),
+    };
+    let Some(form) = form else {
+        let summands = blame::summands(plant, index, |term| nonlinear(premises, term).is_some());
+        return refuted(plant, index, &summands, &point);
+    };
+    not_in_other_forms(plant, rate, &point, form)
 }
 
-/// A rate that is linear in functions of theta from which theta was not found.
-pub(super) fn not_recovered(plant: &Plant, index: usize, span: Span, functions: &str) -> Diagnostic {
-    let output = plant.arena.name(plant.y[index].symbol);
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("the rate of {output} is linear in functions of theta, but theta was not recovered from them"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note(format!("the functions of theta: {functions}"))
-    .help("choose a phi in which this rate is affine, or give an identity under `identities`")
+/// A form in which the unknowns of a rate that is not affine, a function of z, may be linear all the same, if not all
+/// such forms were tried on each cell.
+fn other_form(premises: &Premises<'_>, rate: Expr) -> Option<OtherForm> {
+    let (arena, unknown) = (premises.arena(), premises.unknown());
+    let Ok(cells) = premises.domain.cells(arena, &[rate], |divider| arena.depends_on(divider, &unknown)) else {
+        return Some(OtherForm::Unknown);
+    };
+    cells.iter().find_map(|cell| {
+        let branch = cell.domain.analytic(arena, &[rate])[0];
+        other_form_on_cell(&Premises { domain: &cell.domain, ..*premises }, branch)
+    })
+}
+
+fn other_form_on_cell(premises: &Premises<'_>, rate: Expr) -> Option<OtherForm> {
+    let (arena, plant, unknown) = (premises.arena(), premises.plant, premises.unknown());
+    let Ok(below) = implicit::factor(premises, rate) else { return Some(OtherForm::Unknown) };
+    if let Some(below) = below.filter(|below| arena.depends_on(*below, &unknown)) {
+        let both = [below, arena.mul(below, rate)];
+        if !matches!(separation::separate(premises, &both), Ok(None)) {
+            return Some(OtherForm::Multiplied);
+        }
+    }
+    // A component without a rate of its own is a constant, and so is each of its functions.
+    let is_curved = |z: Symbol| arena.depends_on(arena.derivative(rate, z), &BTreeSet::from([z]));
+    constant_components(premises).find(|index| is_curved(plant.z[*index])).map(OtherForm::Function)
+}
+
+/// The components of the transform without a rate.
+fn constant_components(premises: &Premises<'_>) -> impl Iterator<Item = usize> {
+    let cascade = premises.cascade;
+    let is_constant = move |index: &usize| cascade.lambda.is_none() && premises.arena().is_zero(cascade.h[*index]);
+    (0..cascade.h.len()).filter(is_constant)
 }
 
 /// The reason why a rate is no affine function of the transform, by points of the domain.
@@ -102,114 +197,34 @@ pub(super) fn not_recovered(plant: &Plant, index: usize, span: Span, functions: 
 /// A second derivative, where the transform has as many components as there are states: it is then one-to-one on a
 /// neighbourhood of each point of the domain, so that z moves freely there. Else points with the same y, u and
 /// parameters at which no affine function takes the rate's values.
-pub(super) fn nonlinear(
-    plant: &Plant,
-    domain: &Domain,
-    rate: Expr,
-    left_inverse: Option<&LeftInverse>,
-) -> Option<String> {
-    let arena = &plant.arena;
-    if let Some(witness) = left_inverse.and_then(|inverse| curvature(plant, domain, rate, inverse)) {
+fn nonlinear(premises: &Premises<'_>, rate: Expr) -> Option<String> {
+    let (arena, plant) = (premises.arena(), premises.plant);
+    if let Some(witness) = curvature(premises, rate) {
         return Some(format!(
             "as a function of z, this rate has a second derivative that is not zero: {}",
             witness.sentence(arena)
         ));
     }
-    let points = affine::refuted(plant, domain, rate)?;
+    let points = affine::refuted(plant, premises.domain, rate)?;
     let compared = Comparison::of([rate, rate], &points, &plant.hidden());
     Some(format!("no affine function of phi has the values of this rate: {}", compared.sentence(arena, "the rate")))
 }
 
 /// A point of the domain at which the rate, as a function of z, has a second derivative.
-fn curvature(plant: &Plant, domain: &Domain, rate: Expr, left_inverse: &LeftInverse) -> Option<Witness> {
-    let arena = &plant.arena;
-    let inverse: BTreeMap<Symbol, Expr> = left_inverse.x.iter().copied().collect();
-    let in_z = arena.substitute(rate, &inverse);
+fn curvature(premises: &Premises<'_>, rate: Expr) -> Option<Witness> {
+    let (arena, plant) = (premises.arena(), premises.plant);
+    let in_z = premises.at_left_inverse(rate)?;
     // On a manifold of the states z does not move freely.
-    let bound = plant.identities.iter().any(|identity| arena.depends_on(identity.expr, &plant.hidden()));
-    if bound || plant.phi.len() != inverse.len() || arena.depends_on(in_z, &plant.hidden()) {
+    let bound = plant.identities.iter().any(|identity| premises.is_hidden(identity.expr));
+    let states = premises.left_inverse.map_or(0, |inverse| inverse.x.len());
+    if bound || plant.phi.len() != states || premises.is_hidden(in_z) {
         return None;
     }
     // Back at z = phi(x, y), so that the domain of x is the one that is searched.
-    let transform: BTreeMap<Symbol, Expr> = plant.z.iter().copied().zip(plant.transform()).collect();
-    for (index, first) in plant.z.iter().enumerate() {
-        for second in &plant.z[index..] {
-            let curvature = arena.derivative(arena.derivative(in_z, *first), *second);
-            let curvature = arena.substitute(curvature, &transform);
-            if let Some(point) = refute(arena, curvature, domain) {
-                return Some(Witness::of(curvature, &point));
-            }
-        }
-    }
-    None
-}
-
-pub(super) fn refuted(plant: &Plant, index: usize, summands: &[Formula], point: &str, other_forms: &str) -> Diagnostic {
-    let arena = &plant.arena;
-    let output = arena.name(plant.y[index].symbol);
-    let (first, others) = summands.split_first().map_or((plant.y[index].span, &[][..]), |(f, rest)| (f.span, rest));
-    let diagnostic = Diagnostic::error(
-        Code::RegressionNonlinear,
-        first,
-        format!("the rate of {output} is not linear in the unknowns"),
-    );
-    let diagnostic = others
-        .iter()
-        .fold(diagnostic, |diagnostic, other| diagnostic.also(other.span, "this term is not affine in phi either"));
-    diagnostic.label("not an affine function of phi with coefficients in y and u").note(point).note(other_forms).help(
-        "choose a phi in which this rate is affine, leave the output's rate out of `f_y` if others suffice, or give \
-           an identity under `identities`",
-    )
-}
-
-/// A form of a regression that is not affine in z.
-#[derive(Clone, Copy)]
-pub(super) enum OtherForm {
-    /// The rate times an unknown that it is divided by.
-    Multiplied,
-    /// In a function of this component, which is constant.
-    Function(usize),
-    /// As a function of z, which is not known without a left inverse.
-    Unknown,
-}
-
-/// A rate that is not affine in z, but may be linear in the unknowns in another form.
-pub(super) fn not_in_other_forms(plant: &Plant, index: usize, span: Span, point: &str, form: OtherForm) -> Diagnostic {
-    let arena = &plant.arena;
-    let output = arena.name(plant.y[index].symbol);
-    let diagnostic = Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether a regression for the rate of {output} is linear in the unknowns"),
-    )
-    .label("not an affine function of phi with coefficients in y and u")
-    .note(point);
-    match form {
-        OtherForm::Multiplied => diagnostic
-            .note(
-                "an unknown divides this rate, and the rate times it is no derivative of what is affine in phi with \
-                 polynomials of the outputs for coefficients; other factors were not tried",
-            )
-            .help("choose a phi in which this rate is affine, or measure another output"),
-        OtherForm::Unknown => diagnostic
-            .note("without a left inverse this rate is not known as a function of z, which may be linear in functions of theta")
-            .help("give the left inverse under `phi_left`, or choose a phi in which this rate is affine"),
-        OtherForm::Function(component) => {
-            let phi = arena.print(plant.phi[component].expr);
-            diagnostic
-                .note(format!("`{phi}` is constant, and so is each of its functions"))
-                .help(format!("take the functions of `{phi}` that this rate holds as components of phi"))
-        }
-    }
-}
-
-pub(super) fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obstacle) -> Diagnostic {
-    let output = plant.y.get(index).map_or_else(String::new, |o| format!(" of {}", plant.arena.name(o.symbol)));
-    Diagnostic::error(
-        Code::RegressionUndecided,
-        span,
-        format!("it could not be decided whether the rate{output} is linear in the unknowns"),
-    )
-    .note(format!("obstacle: {obstacle}"))
-    .help("simplify the formula, or state signs under `assume`")
+    let pairs =
+        plant.z.iter().enumerate().flat_map(|(i, first)| plant.z[i..].iter().map(move |second| (first, second)));
+    pairs.into_iter().find_map(|(first, second)| {
+        let curvature = premises.at_phi(arena.derivative(arena.derivative(in_z, *first), *second));
+        refute(arena, curvature, premises.domain).map(|point| Witness::of(curvature, &point))
+    })
 }

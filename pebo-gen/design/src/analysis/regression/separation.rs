@@ -2,25 +2,21 @@
 //!
 //! In: expressions in z. Out: with z = chi + theta, each as a sum of products of a known function of
 //! chi, y and u with a function of theta alone, where polynomials, exponentials, sines and cosines
-//! allow it; and theta recovered from those functions (Ortega et al. 2015, remark R4 and eq. 28).
+//! allow it (Ortega et al. 2015, remark R4 and eq. 28).
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::plant::Plant;
-use pebo_cas::domain::zero::{Answer, decide};
+use super::premises::Premises;
+use pebo_cas::domain::zero::{Answer, decide, point_of};
 use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::linear::comparison::combine;
 use pebo_cas::poly::Monomial;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
-use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};
-
-use crate::analysis::left_inverse::checking::is_whole_turns;
-use pebo_cas::forms::tidy::shortest;
-use pebo_cas::solve::{Equation, solve};
+use pebo_cas::{Arena, Expr, Rational, Symbol};
 
 /// Expressions as `known + factors * eta`.
 #[derive(Clone, Debug)]
-pub(in crate::analysis) struct Separation {
+pub(super) struct Separation {
     /// The known term of each expression.
     pub known: Vec<Expr>,
     /// The factors of each eta, a row for each expression.
@@ -30,12 +26,8 @@ pub(in crate::analysis) struct Separation {
 }
 
 /// Separates expressions in z at z = chi + theta; none where a kernel mixes theta with signals.
-pub(in crate::analysis) fn separate(
-    plant: &Plant,
-    domain: &Domain,
-    in_z: &[Expr],
-) -> Result<Option<Separation>, Obstacle> {
-    let arena = &plant.arena;
+pub(super) fn separate(premises: &Premises<'_>, in_z: &[Expr]) -> Result<Option<Separation>, Obstacle> {
+    let (arena, plant) = (premises.arena(), premises.plant);
     let shifted: BTreeMap<Symbol, Expr> = plant
         .z
         .iter()
@@ -47,35 +39,29 @@ pub(in crate::analysis) fn separate(
     if exprs.iter().any(|e| arena.depends_on(*e, &plant.hidden())) {
         return Ok(None);
     }
-    let Some(mut separated) = apart(plant, domain, &unknown, &exprs)? else { return Ok(None) };
+    let Some(mut separated) = apart(premises, &unknown, &exprs)? else { return Ok(None) };
     // Functions of known signals are kept as written, where no relation among them is needed: `tanh(5*u)` by
     // exponentials overflows where it is 1.
     let mut frozen = OpaqueTerms::new(arena, &unknown);
     let signals = frozen.replace(&exprs);
     if !frozen.is_empty()
-        && let Ok(Some(kept)) = apart(plant, domain, &unknown, &signals)
+        && let Ok(Some(kept)) = apart(premises, &unknown, &signals)
         && kept.eta == separated.eta
     {
         let thaw = |exprs: &[Expr]| -> Vec<Expr> { exprs.iter().map(|expr| frozen.restore(*expr)).collect() };
         separated.known = thaw(&kept.known);
         separated.factors = kept.factors.iter().map(|row| thaw(row)).collect();
     }
-    prove(plant, domain, &exprs, &separated)?;
+    prove(premises, &exprs, &separated)?;
     Ok(Some(separated))
 }
 
 /// Separates expressions at z = chi + theta; none where a kernel mixes theta with signals.
-fn apart(
-    plant: &Plant,
-    domain: &Domain,
-    unknown: &BTreeSet<Symbol>,
-    exprs: &[Expr],
-) -> Result<Option<Separation>, Obstacle> {
-    let arena = &plant.arena;
-    let field = Field::over(arena, &domain.facts, exprs)?;
+fn apart(premises: &Premises<'_>, unknown: &BTreeSet<Symbol>, exprs: &[Expr]) -> Result<Option<Separation>, Obstacle> {
+    let arena = premises.arena();
+    let field = Field::over(arena, &premises.domain.facts, exprs)?;
     let kernels: Vec<u32> = field.kernels_of(unknown).into_iter().collect();
-    let constants: BTreeSet<Symbol> =
-        plant.parameters.iter().map(|p| p.symbol).chain(unknown.iter().copied()).collect();
+    let constants: BTreeSet<Symbol> = premises.constants().union(unknown).copied().collect();
     if kernels.iter().any(|k| !arena.symbols_of(&[field.kernel(*k)]).is_subset(&constants)) {
         return Ok(None);
     }
@@ -134,13 +120,19 @@ fn product(a: &Powers, b: &Powers) -> Powers {
     total.into_iter().filter(|p| p.1 != 0).collect()
 }
 
+impl Separation {
+    /// The expressions themselves.
+    fn rebuilt(&self, arena: &Arena) -> Vec<Expr> {
+        let rows = self.known.iter().zip(&self.factors);
+        rows.map(|(known, factors)| arena.add(*known, arena.dot(factors, &self.eta))).collect()
+    }
+}
+
 /// Proves that the separation is an identity.
-fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separation) -> Result<(), Obstacle> {
-    let arena = &plant.arena;
-    for (expr, (known, factors)) in exprs.iter().zip(separated.known.iter().zip(&separated.factors)) {
-        let products = factors.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e));
-        let rebuilt = arena.add(*known, arena.sum(products));
-        match decide(arena, arena.sub(*expr, rebuilt), domain) {
+fn prove(premises: &Premises<'_>, exprs: &[Expr], separated: &Separation) -> Result<(), Obstacle> {
+    let arena = premises.arena();
+    for (expr, rebuilt) in exprs.iter().zip(separated.rebuilt(arena)) {
+        match decide(arena, arena.sub(*expr, rebuilt), premises.domain) {
             Answer::Zero => {}
             Answer::Open(obstacle) => return Err(obstacle),
             Answer::NonZero(_) => return Err(Obstacle::NoWitness),
@@ -149,13 +141,18 @@ fn prove(plant: &Plant, domain: &Domain, exprs: &[Expr], separated: &Separation)
     Ok(())
 }
 
+/// Tests whether a function of z is a sum of known signals times functions of theta.
+pub(super) fn is_separable(premises: &Premises<'_>, in_z: Expr) -> bool {
+    matches!(separate(premises, &[in_z]), Ok(Some(_)))
+}
+
 /// Joins all functions of theta whose factors are constants of the plant into one, with the constants of the known
 /// term: `|chi + theta - L i|^2 - m^2` then has the unknown `|theta|^2 - m^2`.
-pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, separated: Separation) -> Separation {
-    let arena = &plant.arena;
+pub(super) fn absorb_constants(premises: &Premises<'_>, separated: Separation) -> Separation {
+    let arena = premises.arena();
     // With several rows the constants would differ from row to row.
     let [factors] = separated.factors.as_slice() else { return separated };
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let constants = premises.constants();
     let is_constant = |e: Expr| arena.symbols_of(&[e]).is_subset(&constants);
     let (joined, kept): (Vec<usize>, Vec<usize>) = (0..factors.len()).partition(|i| is_constant(factors[*i]));
     if joined.is_empty() {
@@ -165,50 +162,31 @@ pub(in crate::analysis) fn absorb_constants(plant: &Plant, domain: &Domain, sepa
     let signals = arena.symbols_of(&separated.known).into_iter().filter(|s| !constants.contains(s));
     let origin: BTreeMap<Symbol, Expr> = signals.map(|s| (s, arena.zero())).collect();
     let constant = arena.substitute(separated.known[0], &origin);
-    let constant = match pebo_cas::domain::zero::point_of(arena, constant, domain) {
-        Some(_) => constant,
-        None => arena.zero(),
-    };
+    let has_value = point_of(arena, constant, premises.domain).is_some();
+    let constant = if has_value { constant } else { arena.zero() };
     let mut sum: Vec<Expr> = joined.iter().map(|i| arena.mul(factors[*i], separated.eta[*i])).collect();
     sum.push(constant);
-    let joint = shortest(arena, domain, arena.neg(arena.sum(sum)));
+    let joint = premises.shortest(arena.neg(arena.sum(sum)));
     let mut eta: Vec<Expr> = kept.iter().map(|i| separated.eta[*i]).collect();
     let mut row: Vec<Expr> = kept.iter().map(|i| factors[*i]).collect();
     eta.push(joint);
     row.push(arena.number(-1));
-    let known = shortest(arena, domain, arena.sub(separated.known[0], constant));
+    let known = premises.shortest(arena.sub(separated.known[0], constant));
     Separation { known: vec![known], factors: vec![row], eta }
-}
-
-/// The separation with theta recovered from its functions: the fewer of them, if they are enough. None if theta is not
-/// recovered.
-pub(in crate::analysis) fn recoverable(
-    plant: &Plant,
-    domain: &Domain,
-    separated: Separation,
-) -> Option<(Separation, ThetaRecovery)> {
-    let joined = join_dependent(plant, domain, &separated).ok().and_then(|joined| {
-        let recovered = recover(plant, domain, &joined.eta)?;
-        Some((joined, recovered))
-    });
-    joined.or_else(|| {
-        let recovered = recover(plant, domain, &separated.eta)?;
-        Some((separated, recovered))
-    })
 }
 
 /// Joins functions of theta whose factors are constant combinations of other factors: only their sums are identifiable,
 /// as `theta1 + theta2^2` in a rate `a + b^2`.
-fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separation) -> Result<Separation, Obstacle> {
-    let arena = &plant.arena;
+pub(super) fn join_dependent(premises: &Premises<'_>, separated: &Separation) -> Result<Separation, Obstacle> {
+    let arena = premises.arena();
     // A symbol for each row, so that one expression holds a column.
     let marks: Vec<Symbol> = (0..separated.factors.len()).map(|row| arena.generated(&format!("row {row}"))).collect();
     let column = |j: usize| {
         arena.sum(marks.iter().zip(&separated.factors).map(|(mark, row)| arena.mul(arena.of_symbol(*mark), row[j])))
     };
     let columns: Vec<Expr> = (0..separated.eta.len()).map(column).collect();
-    let field = Field::over(arena, &domain.facts, &columns)?;
-    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|p| p.symbol).collect();
+    let field = Field::over(arena, &premises.domain.facts, &columns)?;
+    let constants = premises.constants();
     let signals: BTreeSet<Symbol> = arena.symbols_of(&columns).difference(&constants).copied().collect();
     let mut kept: Vec<(usize, Expr)> = Vec::new();
     for (j, &eta) in separated.eta.iter().enumerate() {
@@ -227,93 +205,6 @@ fn join_dependent(plant: &Plant, domain: &Domain, separated: &Separation) -> Res
         factors: separated.factors.iter().map(|row| kept.iter().map(|(j, _)| row[*j]).collect()).collect(),
         eta: kept.into_iter().map(|(_, sum)| sum).collect(),
     };
-    let rows = separated.factors.iter().zip(&separated.known);
-    let exprs: Vec<Expr> = rows
-        .map(|(row, known)| {
-            arena.add(*known, arena.sum(row.iter().zip(&separated.eta).map(|(f, e)| arena.mul(*f, *e))))
-        })
-        .collect();
-    prove(plant, domain, &exprs, &result)?;
+    prove(premises, &separated.rebuilt(arena), &result)?;
     Ok(result)
-}
-
-/// theta as functions of eta, each proved.
-#[derive(Clone, Debug)]
-pub(in crate::analysis) struct ThetaRecovery {
-    /// An entry for each theta, in the eta symbols.
-    pub theta: Vec<Expr>,
-    /// Indices of the components of theta that are determined up to multiples of a step, as from sine and cosine of
-    /// theta, which have the step 2 pi; with the step.
-    pub turning: Vec<(usize, Expr)>,
-}
-
-/// theta from its functions, if they determine it at least up to whole turns.
-pub(in crate::analysis) fn recover(plant: &Plant, domain: &Domain, eta: &[Expr]) -> Option<ThetaRecovery> {
-    let arena = &plant.arena;
-    let symbols = plant.eta(eta.len());
-    let equations: Vec<Equation> =
-        eta.iter().zip(&symbols).map(|(f, s)| Equation { formula: *f, value: arena.of_symbol(*s) }).collect();
-    let direct: BTreeMap<Symbol, Expr> = equations
-        .iter()
-        .filter_map(|e| Some((arena.as_symbol(e.formula)?, e.value)))
-        .filter(|(s, _)| plant.theta.contains(s))
-        .collect();
-    let rest: Vec<Symbol> = plant.theta.iter().copied().filter(|t| !direct.contains_key(t)).collect();
-    // The others are solved for with these in their place.
-    let equations: Vec<Equation> = equations
-        .iter()
-        .map(|e| Equation { formula: arena.substitute(e.formula, &direct), value: e.value })
-        .filter(|e| e.formula != e.value)
-        .collect();
-    let mut solved = if rest.is_empty() { BTreeMap::new() } else { solve(arena, domain, &equations, &rest).ok()? };
-    solved.extend(direct.into_iter().map(|(symbol, value)| (symbol, vec![value])));
-    for theta in &rest {
-        solved.entry(*theta).or_default().extend(as_ratio(arena, *theta, eta, &symbols));
-    }
-    let values: BTreeMap<Symbol, Expr> = symbols.iter().copied().zip(eta.iter().copied()).collect();
-    let unknown: BTreeSet<Symbol> = plant.theta.iter().copied().collect();
-    let mut recovered = ThetaRecovery { theta: Vec::new(), turning: Vec::new() };
-    for (index, theta) in plant.theta.iter().enumerate() {
-        let candidates = solved.get(theta)?.iter().filter(|f| !arena.depends_on(**f, &unknown));
-        let difference = |formula: Expr| arena.sub(arena.substitute(formula, &values), arena.of_symbol(*theta));
-        let exact = candidates.clone().find(|f| decide(arena, difference(**f), domain).is_zero());
-        if let Some(formula) = exact {
-            recovered.theta.push(*formula);
-            continue;
-        }
-        let (formula, step) = candidates.clone().find_map(|formula| {
-            let per_turn = per_turn(arena, *formula);
-            let turns = arena.div(difference(*formula), per_turn);
-            let step = arena.mul(arena.turn(), per_turn);
-            is_whole_turns(arena, domain, turns).then_some((*formula, step))
-        })?;
-        recovered.theta.push(formula);
-        recovered.turning.push((index, step));
-    }
-    Some(recovered)
-}
-
-/// theta from functions that are others times theta, as from `cos(theta)`, `sin(theta)`, `theta*cos(theta)` and
-/// `theta*sin(theta)`: the quotient with the least squares, which has a value where one of the others is not zero.
-fn as_ratio(arena: &Arena, theta: Symbol, eta: &[Expr], symbols: &[Symbol]) -> Option<Expr> {
-    let theta = arena.of_symbol(theta);
-    let (mut above, mut below) = (Vec::new(), Vec::new());
-    for (factor, symbol) in eta.iter().zip(symbols) {
-        if let Some(index) = eta.iter().position(|other| *other == arena.mul(theta, *factor)) {
-            let symbol = arena.of_symbol(*symbol);
-            above.push(arena.mul(symbol, arena.of_symbol(symbols[index])));
-            below.push(arena.mul(symbol, symbol));
-        }
-    }
-    (!below.is_empty()).then(|| arena.div(arena.sum(above), arena.sum(below)))
-}
-
-/// The growth of a formula in the angle that it is a multiple of; one where it is none.
-fn per_turn(arena: &Arena, formula: Expr) -> Expr {
-    let Node::Product(product) = arena.node(formula) else { return arena.one() };
-    let is_angle = |base: &Expr| matches!(arena.node(*base), Node::Call(Function::Atan2, _));
-    match product.factors.iter().find(|(base, exponent)| is_angle(base) && exponent.is_one()) {
-        Some((angle, _)) => arena.div(formula, *angle),
-        None => arena.one(),
-    }
 }

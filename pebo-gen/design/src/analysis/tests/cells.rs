@@ -88,7 +88,7 @@ fn equilibria_are_listed_too_where_inputs_have_to_vary() {
         cell,
         &[
             "while `I` is constant, only `z1`, `z2 - I*z3` is identified",
-            "while the plant rests, only `z2 - I*z3 - V*z1` is identified",
+            "while the plant rests, only `z2 - V*z1 - I*z3` is identified",
         ],
     );
 }
@@ -114,8 +114,12 @@ fn a_transform_is_inverted_on_each_cell() {
 
 #[test]
 fn a_rate_of_an_unknown_inverse_is_not_refuted() {
-    let divided = "x: [b]\ny: [q]\nf_x: {b: 1/(1 + 3*b^2)}\nf_y: {q: 1/(b + b^3)}\nphi: [b + b^3]";
-    assert_eq!(derive(divided).1.regression.verdict, Verdict::Undecided);
+    let of = |rate: &str| {
+        let lines = format!("x: [b]\ny: [q]\nf_x: {{b: 1/(1 + 3*b^2)}}\nf_y: {{q: {rate}}}\nphi: [b + b^3]");
+        derive(&lines).1.regression.verdict
+    };
+    assert_eq!(of("exp(b + b^3)"), Verdict::Undecided);
+    assert_eq!(of("1/(b + b^3)"), Verdict::Proved, "linear in phi times the rate");
 }
 
 #[test]

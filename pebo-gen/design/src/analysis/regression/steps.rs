@@ -1,52 +1,15 @@
-//! Regressions in functions of theta, dynamic or under the derivative, with the ambiguity of theta.
+//! The ambiguity of theta where functions of it are identified: up to turns, which may be harmless, a warning, or lose a
+//! state.
 
 use std::collections::BTreeMap;
 
-use super::separation::{self, Separation, ThetaRecovery};
-use crate::analysis::design::{Claim, LeftInverse, Regression, RegressionKind, Verdict};
+use super::premises::Premises;
+use super::recovery::ThetaRecovery;
+use crate::analysis::design::Verdict;
 use crate::analysis::left_inverse::checking::is_whole_turns;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
-use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::tidy::shortest;
-use pebo_cas::{Domain, Expr, Relation, Symbol};
-
-/// A regression in functions of theta, if theta can be recovered from them: a dynamic one with a row for each
-/// output, an implicit one with so many rows of primitives before these; with the outputs of each row.
-pub(super) fn over_parameterised(
-    plant: &Plant,
-    domain: &Domain,
-    left_inverse: &LeftInverse,
-    (sources, held): (Vec<Vec<usize>>, usize),
-    separated: Separation,
-    found: &mut Vec<Diagnostic>,
-) -> Option<Claim<Regression>> {
-    let (separated, recovered) = separation::recoverable(plant, domain, separated)?;
-    let steps = match steps(plant, domain, left_inverse, &separated.eta, &recovered, found) {
-        Ok(steps) => steps,
-        Err(verdict) => return Some(Claim { verdict, result: None }),
-    };
-    // With sides of a primitive first, these are the first half of the rows.
-    let short = |row: &Vec<Expr>| row.iter().map(|e| shortest(&plant.arena, domain, *e)).collect::<Vec<Expr>>();
-    let (mut phi_0, mut phi_1) = (short(&separated.known), separated.factors.iter().map(short).collect::<Vec<_>>());
-    let primitive_0: Vec<Expr> = phi_0.drain(..held).collect();
-    let primitive_1: Vec<Vec<Expr>> = phi_1.drain(..held).collect();
-    let result = Regression {
-        kind: if held == 0 { RegressionKind::Dynamic } else { RegressionKind::Implicit },
-        sources,
-        phi_0,
-        phi_1,
-        primitive_0,
-        primitive_1,
-        eta_symbols: plant.eta(separated.eta.len()),
-        steps,
-        alternative: None,
-        unused: Vec::new(),
-        eta: separated.eta,
-        theta: recovered.theta,
-    };
-    Some(Claim { verdict: Verdict::Proved, result: Some(result) })
-}
+use pebo_cas::{Expr, Relation, Symbol};
 
 /// The states that move by a constant where theta moves by the step that leaves it ambiguous: the outputs do not
 /// distinguish them from angles, which is a warning.
@@ -55,33 +18,31 @@ pub(super) fn over_parameterised(
 /// The verdict on a regression that loses a state: one that does not move by a constant, or an angle that moves by a
 /// fraction of its period.
 pub(super) fn steps(
-    plant: &Plant,
-    domain: &Domain,
-    left_inverse: &LeftInverse,
+    premises: &Premises<'_>,
     eta: &[Expr],
     recovered: &ThetaRecovery,
     found: &mut Vec<Diagnostic>,
 ) -> Result<Vec<(Symbol, Expr)>, Verdict> {
-    let arena = &plant.arena;
+    let (arena, plant, domain) = (premises.arena(), premises.plant, premises.domain);
     let mut steps = Vec::new();
     for &(index, step) in &recovered.turning {
         let turned = |expr: Expr, symbol: Symbol, step: Expr| {
             let moved = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), step))]);
-            shortest(arena, domain, arena.sub(arena.substitute(expr, &moved), expr))
+            premises.shortest(arena.sub(arena.substitute(expr, &moved), expr))
         };
-        for &(state, formula) in &left_inverse.x {
+        for &(state, formula) in premises.left_inverse.iter().flat_map(|inverse| &inverse.x) {
             let shift = turned(formula, plant.z[index], step);
             let kept = match plant.period(state) {
                 Some(period) => is_whole_turns(arena, domain, arena.div(arena.mul(shift, arena.turn()), period)),
-                None => decide(arena, shift, domain).is_zero(),
+                None => premises.vanishes(shift),
             };
             if kept {
                 continue;
             }
             // The outputs themselves are blind to the step, or only the formula for theta is; and the domain holds the
             // states on both sides of it, or not.
-            let constant = arena.symbols_of(&[shift]).iter().all(|s| plant.parameters.iter().any(|p| p.symbol == *s));
-            let blind = eta.iter().all(|e| decide(arena, turned(*e, plant.theta[index], step), domain).is_zero());
+            let constant = arena.symbols_of(&[shift]).is_subset(&premises.constants());
+            let blind = eta.iter().all(|e| premises.vanishes(turned(*e, plant.theta[index], step)));
             let bounded = domain.facts.iter().any(|(fact, _)| arena.symbols_of(&[fact]).contains(&state));
             if blind && !bounded && constant && plant.period(state).is_none() {
                 // The state may well be an angle: the outputs do not distinguish it from one. A period is positive.
@@ -92,8 +53,7 @@ pub(super) fn steps(
                 continue;
             }
             found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
-            let verdict = if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided };
-            return Err(verdict);
+            return Err(if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided });
         }
     }
     Ok(steps)

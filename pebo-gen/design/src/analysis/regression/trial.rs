@@ -1,0 +1,56 @@
+//! A regression of selected equations, with its identifiability.
+
+use super::build::{self, Obstruction};
+use super::equation::Equation;
+use super::premises::Premises;
+use crate::analysis::design::{Claim, Excitation, Identifiability, Regression, Verdict};
+use crate::analysis::limited::limited;
+use crate::analysis::{identifiability, permitted};
+use crate::source::Diagnostic;
+
+/// A proved regression, with the verdict on its identifiability.
+pub(super) struct Trial {
+    pub(super) equations: Vec<Equation>,
+    pub(super) regression: Regression,
+    pub(super) identifiability: Claim<Identifiability>,
+    pub(super) said: Vec<Diagnostic>,
+}
+
+impl Trial {
+    pub(super) fn of(premises: &Premises<'_>, equations: Vec<Equation>) -> Result<Self, Obstruction> {
+        let Premises { plant, domain, class, cascade, left_inverse } = *premises;
+        let mut said = Vec::new();
+        let built = build::regression(premises, &equations, &mut said)?;
+        let claim = limited(plant, "the regression", &mut said, |said| {
+            let claim = Claim { verdict: Verdict::Proved, result: Some(built) };
+            permitted::regression(plant, class, claim, said)
+        });
+        let Some(regression) = claim.result.filter(|_| claim.verdict == Verdict::Proved) else {
+            return Err(Obstruction::Refused(claim.verdict, said));
+        };
+        let identifiability = limited(plant, "identifiability", &mut said, |said| {
+            identifiability::prove(plant, domain, cascade, &regression, left_inverse, said)
+        });
+        Ok(Self { equations, regression, identifiability, said })
+    }
+
+    pub(super) fn is_identified(&self) -> bool {
+        self.identifiability.verdict == Verdict::Proved
+    }
+
+    /// Tests whether one instant identifies all unknowns.
+    pub(super) fn is_at_once(&self) -> bool {
+        let result = self.identifiability.result.as_ref();
+        self.is_identified() && result.is_some_and(|result| result.kind == Excitation::Instant)
+    }
+
+    /// Tests whether all unknowns are identified without a movement of the inputs.
+    pub(super) fn is_by_itself(&self) -> bool {
+        let trajectories = self.identifiability.result.iter().find_map(|result| result.trajectories.as_ref());
+        self.is_at_once() || self.is_identified() && trajectories.is_some_and(|t| t.by_itself == Some(true))
+    }
+
+    pub(super) fn claims(self) -> (Claim<Regression>, Claim<Identifiability>) {
+        (Claim { verdict: Verdict::Proved, result: Some(self.regression) }, self.identifiability)
+    }
+}
