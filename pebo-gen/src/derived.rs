@@ -79,7 +79,13 @@ impl Derived {
             }
         };
         if let Some(best) = best {
-            let best = search.candidates.swap_remove(best);
+            let mut best = search.candidates.swap_remove(best);
+            if let (Some((candidate, declaration)), Some(first)) =
+                (&search.declared, best.derivation.diagnostics.first_mut())
+            {
+                let note = search::words::declared(candidate, declaration);
+                *first = first.clone().note(note).help(declaration.help(&plant.arena));
+            }
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }
         let names = (model.x.first(), model.x.last());

@@ -303,6 +303,26 @@ fn a_declaration_with_which_a_transform_is_accepted_is_found_by_trying() {
 }
 
 #[test]
+fn a_state_on_which_no_output_depends_may_be_left_out() {
+    let lines = "parameters: {k: 0.5, m: 2}\nx: [v, w]\ny: [q]\nu: [F]\nf_x: {v: F/m - v, w: v - k*w}\nf_y: {q: v}";
+    let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).unwrap();
+    let derived = pebo_gen::derive(&source).unwrap();
+    let refusal = &derived.derivation.diagnostics[0];
+    assert_eq!(refusal.code, Code::NeverIdentifiable);
+    assert!(refusal.notes.iter().any(|note| note.starts_with("with no `w`, phi = [")), "{refusal:?}");
+    assert_eq!(
+        refusal.help.as_deref(),
+        Some("measure an output that depends on `w`, or leave it out under `x` and `f_x`")
+    );
+    // Where the rest is no better, it is said all the same.
+    let product = "x: [c, d, b]\ny: [T]\nu: [q]\nf_x: {c: -q*c, d: q*(c - d), b: 0}\nf_y: {T: c*b - T}";
+    let source = Source::new("m.yaml", format!("model: m\n{product}\n")).unwrap();
+    let derived = pebo_gen::derive(&source).unwrap();
+    let notes = derived.derivation.diagnostics[0].notes.join("; ");
+    assert!(notes.contains("no output depends on `d`: nothing recovers it"), "{notes}");
+}
+
+#[test]
 fn a_plant_that_contradicts_itself_is_refused_before_any_search() {
     let plant = "x: [v]\ny: [s]\nf_x: {v: 0}\nf_y: {s: 2*v}\ng_y: {s: 3*v}";
     for lines in [plant.to_owned(), format!("{plant}\nphi: [v]")] {

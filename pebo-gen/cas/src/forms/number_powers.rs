@@ -22,15 +22,18 @@ pub(crate) fn as_power(arena: &Arena, argument: Expr) -> Option<(Rational, Expr)
 /// The parts of an expression in the order of printing: those that a power of a number is written with come before it.
 pub(crate) fn printed_parts(arena: &Arena, expr: Expr) -> Vec<Expr> {
     let mut roots = vec![expr];
+    let mut placed: FxHashSet<Expr> = FxHashSet::default();
     loop {
-        let parts = arena.postorder(&roots);
+        let mut met: FxHashSet<Expr> = FxHashSet::default();
+        let in_order = roots.iter().flat_map(|root| arena.postorder(&[*root]));
+        let parts: Vec<Expr> = in_order.filter(|part| met.insert(*part)).collect();
         let exponent = |part: &Expr| match arena.node(*part) {
             Node::Call(Function::Exp, argument) => Some(as_power(arena, argument[0])?.1),
             _ => None,
         };
-        let met: FxHashSet<Expr> = parts.iter().copied().collect();
+        // A part that comes by itself may come too late.
         let mut open: Vec<Expr> =
-            parts.iter().filter_map(exponent).filter(|exponent| !met.contains(exponent)).collect();
+            parts.iter().filter_map(exponent).filter(|exponent| placed.insert(*exponent)).collect();
         if open.is_empty() {
             return parts;
         }
@@ -182,7 +185,10 @@ mod tests {
             (arena.mul(power(2, x), power(5, a)), "2^x*5^a"),
             (arena.add(arena.mul(x, log(2)), log(5)), "log(5) + x*log(2)"),
             (arena.call(Function::Exp, &[x]), "exp(x)"),
-            (arena.power(power(10, arena.add(a, x)), &2.into()), "(10^(a + x))^2"),
+            // The exponent is a part of its own, behind the power.
+            (arena.add(power(10, arena.mul(a, x)), arena.mul(a, x)), "x*a + 10^(x*a)"),
+            (power(2, power(2, power(2, x))), "2^(2^(2^x))"),
+            (arena.power(power(10, arena.add(a, x)), &2.into()), "(10^(x + a))^2"),
             (power(10, by(x, 1, 2)), "10^(x/2)"),
             (arena.raise(arena.number(Rational::new(1, 3).unwrap()), x), "(1/3)^x"),
         ];

@@ -200,6 +200,32 @@ impl Plant {
         plant
     }
 
+    /// The same plant where these are between the negatives of bounds and the bounds.
+    #[must_use]
+    pub fn within_bounds(&self, bounds: &[(Symbol, Expr)]) -> Self {
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let arena = &self.arena;
+        let mut plant = self.clone();
+        let sides = bounds.iter().flat_map(|(symbol, most)| {
+            let value = arena.of_symbol(*symbol);
+            [arena.add(*most, value), arena.sub(*most, value)]
+        });
+        plant.assumptions.extend(sides.map(|expr| Assumption { expr, relation: Relation::Positive, span }));
+        plant
+    }
+
+    /// The same plant without these states, on which nothing else depends, and what is assumed of them.
+    #[must_use]
+    pub fn without_states(&self, states: &[Symbol]) -> Self {
+        let holds = |expr: Expr| self.arena.depends_on(expr, &states.iter().copied().collect());
+        let mut plant = self.clone();
+        plant.x.retain(|state| !states.contains(&state.symbol));
+        plant.assumptions.retain(|assumption| !holds(assumption.expr));
+        plant.conditions.retain(|condition| !holds(condition.expr));
+        plant.angles.retain(|(state, _)| !states.contains(state));
+        plant
+    }
+
     /// The same plant where these states are angles of the period.
     #[must_use]
     pub fn with_angles(&self, angles: &[(Symbol, Expr)]) -> Self {

@@ -1,7 +1,8 @@
 //! Declarations with which a transform is accepted, found by trying them.
 //!
-//! In: a search without a transform that is accepted. Out: signs of states, angles among them, or any class of cascade,
-//! where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
+//! In: a search without a transform that is accepted. Out: signs of states, angles among them, bounds of these, any
+//! class of cascade, or the plant without states that no output depends on, where with it all claims of a transform are
+//! proved. Whether the plant has the property only its author knows.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::analysis::{Class, Verdict};
 use crate::plant::Plant;
-use pebo_cas::{Arena, Expr, Function, Node, Relation, Symbol};
+use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::candidate::Candidate;
 use super::problem::Problem;
@@ -24,8 +25,12 @@ pub enum Declaration {
     Positive(Vec<Symbol>),
     /// These states are angles of the period.
     Angles(Vec<(Symbol, Expr)>),
+    /// These states are angles within a quarter of the period to either side of zero.
+    Bounded(Vec<(Symbol, Expr)>),
     /// No class of cascade is asked for.
     AnyClass,
+    /// These states are left out: no output depends on them.
+    Without(Vec<Symbol>),
 }
 
 impl Declaration {
@@ -39,26 +44,50 @@ impl Declaration {
                     |(state, period): &(Symbol, Expr)| format!("{}: {}", arena.name(*state), arena.print(*period));
                 format!("`angles: {{{}}}`", listed(angles.iter().map(entry).collect()))
             }
+            Self::Bounded(angles) => format!("`assume: [{}]`", listed(bounds(arena, angles))),
             Self::AnyClass => "no `class`".to_owned(),
+            Self::Without(states) => {
+                let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
+                format!("no {}", listed(names))
+            }
         }
     }
 
     /// The advice to write it.
     pub fn help(&self, arena: &Arena) -> String {
         match self {
-            Self::Positive(_) | Self::Angles(_) => format!("write {}, if that holds of the plant", self.lines(arena)),
+            Self::Positive(_) | Self::Angles(_) | Self::Bounded(_) => {
+                format!("write {}, if that holds of the plant", self.lines(arena))
+            }
             Self::AnyClass => "leave out `class`".to_owned(),
+            Self::Without(states) => {
+                let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
+                let (names, them) = (names.join(", "), if states.len() == 1 { "it" } else { "them" });
+                format!("measure an output that depends on {names}, or leave {them} out under `x` and `f_x`")
+            }
         }
     }
 
     /// The inequalities that it assumes.
     pub fn assumed(&self, arena: &Arena) -> Vec<String> {
-        if let Self::Positive(states) = self { signs(arena, states) } else { Vec::new() }
+        match self {
+            Self::Positive(states) => signs(arena, states),
+            Self::Bounded(angles) => bounds(arena, angles),
+            Self::Angles(_) | Self::AnyClass | Self::Without(_) => Vec::new(),
+        }
     }
 }
 
 fn signs(arena: &Arena, states: &[Symbol]) -> Vec<String> {
     states.iter().map(|state| format!("{} > 0", arena.name(*state))).collect()
+}
+
+fn bounds(arena: &Arena, angles: &[(Symbol, Expr)]) -> Vec<String> {
+    let bound = |(state, most): &(Symbol, Expr)| {
+        let most = arena.print(*most);
+        format!("-{most} < {} < {most}", arena.name(*state))
+    };
+    angles.iter().map(bound).collect()
 }
 
 /// The search for the best transform of a plant, if one is accepted.
@@ -73,6 +102,7 @@ pub(super) fn helpful(
 ) -> Option<(Candidate, Declaration)> {
     with_signs(problem, candidates)
         .or_else(|| with_angles(problem, class, accepted))
+        .or_else(|| with_bounds(problem, class, accepted))
         .or_else(|| with_any_class(problem, class, accepted))
 }
 
@@ -110,6 +140,57 @@ fn with_angles(
     let plant = plant.with_angles(&angles);
     let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, class))?;
     Some((candidate, Declaration::Angles(angles)))
+}
+
+/// The transform of the plant in which these states are within the range where their sines or tangents tell them apart.
+fn with_bounds(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
+    let (plant, arena) = (problem.plant, problem.arena);
+    let angle = |state: &Symbol| Some((*state, arena.scale(period(plant, *state)?, &Rational::new(1, 4)?)));
+    let angles: Vec<(Symbol, Expr)> = problem.x.iter().filter_map(angle).collect();
+    if angles.is_empty() || !problem.goes_on() {
+        return None;
+    }
+    let plant = plant.within_bounds(&angles);
+    let candidate = arena.budget().share(SHARE, || accepted(&plant, class))?;
+    Some((candidate, Declaration::Bounded(angles)))
+}
+
+/// The transform of the plant without the states that no output depends on.
+pub(super) fn without_unseen(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
+    let plant = problem.plant;
+    let unseen = unseen(plant);
+    if unseen.is_empty() || unseen.len() == plant.x.len() || !problem.goes_on() {
+        return None;
+    }
+    let plant = plant.without_states(&unseen);
+    let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, class))?;
+    Some((candidate, Declaration::Without(unseen)))
+}
+
+/// The states on which no output depends, by its rate, its value or an identity, directly or through other states.
+pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
+    let arena = &plant.arena;
+    let rates = plant.rates();
+    let of_outputs = plant.y.iter().filter_map(|output| Some(output.rate.as_ref().or(output.value.as_ref())?.expr));
+    let identities = plant.identities.iter().map(|identity| identity.expr);
+    let mut seen = arena.symbols_of(&of_outputs.chain(identities).collect::<Vec<Expr>>());
+    loop {
+        let moving: Vec<Expr> = seen.iter().filter_map(|symbol| rates.get(symbol).copied()).collect();
+        let more = arena.symbols_of(&moving);
+        if more.is_subset(&seen) {
+            break;
+        }
+        seen.extend(more);
+    }
+    plant.x.iter().map(|state| state.symbol).filter(|state| !seen.contains(state)).collect()
 }
 
 /// The transform of any class, where one is asked for.

@@ -108,7 +108,9 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         (false, false) => SearchVerdict::Undecided,
     };
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
-    let declared = if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
+    let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
+    let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
+    let declared = if found { None } else { without_unseen().or_else(helpful) };
     Search { verdict, candidates, declared, bound, affine, generalised, tried }
 }
 

@@ -9,7 +9,7 @@ use pebo_cas::{Arena, Expr};
 
 use super::bounds::{Bound, BoundClass, Evidence};
 use super::candidate::Candidate;
-use super::declaration::Declaration;
+use super::declaration::{Declaration, unseen};
 use super::found::{Attempt, Form, Search, SearchVerdict, Start};
 use super::frame::{Block, blocks};
 
@@ -225,6 +225,13 @@ impl Search {
         let states = listed(states.iter().map(String::as_str));
         let message = format!("no transform from which {states} can be recovered was found");
         let mut diagnostic = Diagnostic::error(Code::TransformNotFound, span, message);
+        let unseen: Vec<String> =
+            unseen(plant).into_iter().map(|state| format!("`{}`", plant.arena.name(state))).collect();
+        if !unseen.is_empty() {
+            let them = if unseen.len() == 1 { "it" } else { "them" };
+            diagnostic =
+                diagnostic.note(format!("no output depends on {}: nothing recovers {them}", unseen.join(", ")));
+        }
         for candidate in self.nearest().take(2) {
             diagnostic = diagnostic.note(candidate.sentence());
         }

@@ -131,3 +131,41 @@ fn jumps_are_reported_whatever_the_rates_are() {
         assert_eq!(jumps.iter().map(|jump| plant.arena.print(jump.1)).collect::<Vec<_>>(), ["q"], "{phi}");
     }
 }
+
+/// Between two thresholds there is no cell where these are equal.
+#[test]
+fn thresholds_that_coincide_are_a_condition_if_the_other_cells_identify_less() {
+    let static_inputs = |parameters: &str, formula: &str| {
+        derive(&format!(
+            "parameters: {parameters}\nx: [k, m]\ny: [r]\nu: [a]\nf_x: {{k: 0, m: 0}}\nf_y: {{r: \"{formula}\"}}\n\
+             phi: [k, m]"
+        ))
+    };
+    for (parameters, formula, expected) in [
+        ("{w: 2, s: 1}", "k*max(a - w, 0) + m*max(a - s, 0)", &["w - s != 0"][..]),
+        ("{w: 2}", "k*sat(a) + m*sat(a/w)", &["w - 1 != 0"]),
+        // Two thresholds that are numbers, and one that need not differ from either.
+        ("{w: 2}", "k*max(a, 0) + m*max(a - 1, 0) + max(a, w)", &[]),
+        // Combined by both cells: of their rows, and not of the walls.
+        ("{w: 1, s: 2, v: 3}", "(w*k + s*m)*max(a, 0) + (s*k + v*m)*min(a, 0)", &["w*v - s^2 != 0"]),
+    ] {
+        assert_eq!(conditions(&static_inputs(parameters, formula)), expected, "{formula}");
+    }
+    for (parameters, formula) in [
+        ("{w: 1, s: 1}", "k*max(a - w, 0) + m*max(a - s, 0)"),
+        ("{w: 1}", "k*(max(a, w) - max(a, 1)) + m"),
+        ("{w: 0.1, s: 0.1}", "k*sat(a/w) + m*sat(a/s)"),
+    ] {
+        assert_ne!(static_inputs(parameters, formula).1.outcome, Outcome::Accepted, "{formula}");
+    }
+}
+
+/// A statement on a cell is none on its border, where the plant may rest.
+#[test]
+fn an_equilibrium_on_the_border_of_a_cell_is_listed() {
+    lists(
+        "x: [w2, k]\ny: [th, w1]\nu: [T]\nf_x: {w2: \"k*max(th, 0)\", k: 0}\n\
+         f_y: {th: w1 - w2, w1: \"T - k*max(th, 0)\"}\nphi: [w2 + w1, k]",
+        &["while `th < 0`, only `z1` is identified", "while the plant rests and `th = 0`, only `z1` is identified"],
+    );
+}

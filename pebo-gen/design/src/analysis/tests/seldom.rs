@@ -183,8 +183,12 @@ fn an_unknown_that_vanishes_on_one_cell_is_identifiable_on_the_other() {
         (derivation.outcome, parts.map_or(0, |trajectories| trajectories.blind.len()))
     };
     let outputs = "y: [q, r]";
-    for factor in ["sqrt(q^2) + q", "(q^2)^(1/2) - q", "exp(abs(q)) - exp(q)", "atan2(q, abs(q)) - pi/4"] {
-        assert_eq!(judged(outputs, &format!("q: v, r: \"({factor})*p\"")), (Outcome::Accepted, 1), "{factor}");
+    // The border of the cell is another statement, where the factor has a value.
+    for (factor, statements) in
+        [("sqrt(q^2) + q", 2), ("(q^2)^(1/2) - q", 2), ("exp(abs(q)) - exp(q)", 2), ("atan2(q, abs(q)) - pi/4", 1)]
+    {
+        let judged = judged(outputs, &format!("q: v, r: \"({factor})*p\""));
+        assert_eq!(judged, (Outcome::Accepted, statements), "{factor}");
     }
     for factor in ["asin(sin(q)) - q", "acos(cos(q)) - q", "atan(tan(q)) - q", "atan2(v, q) - atan(v/q)"] {
         assert_eq!(judged(outputs, &format!("q: v, r: \"({factor})*p\"")), (Outcome::Undecided, 0), "{factor}");
@@ -214,4 +218,36 @@ fn an_input_in_a_relation_is_no_constant_that_has_no_rate() {
     assert_eq!(outcome("3 + s - s^2 - v"), Outcome::Accepted);
     // A filter would need the rate of I.
     assert_eq!(outcome("3 + s - s^2 - v - I/7"), Outcome::Undecided);
+}
+
+/// An identity is solved for a rate; where parameters make its factor zero it says something else.
+#[test]
+fn parameters_that_make_an_identity_degenerate_are_excluded() {
+    let of = |value: &str| {
+        derive(&format!(
+            "parameters: {{a: 2}}\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {{p: 0, s: 0}}\ng_y: {{q: {value}}}\nphi: [p, s]"
+        ))
+    };
+    assert_eq!(conditions(&of("(1 - a)*v*p + s")), ["a - 1 != 0"]);
+    assert_eq!(conditions(&of("v*p + s")), [""; 0]);
+}
+
+/// Rows that vanish at equilibria by several equations at once.
+#[test]
+fn equilibria_at_which_rows_vanish_by_a_combination_of_rates_are_listed() {
+    let (plant, derivation) = derive(
+        "x: [p, k]\ny: [q]\nu: [v]\nf_x: {p: \"v - (p - q)*k\", k: 0}\nf_y: {q: \"(p - q)*k - q\"}\nphi: [q*k + p*k, k]",
+    );
+    let result = derivation.identifiability.result.as_ref().and_then(|result| result.trajectories.as_ref());
+    let lines = result.expect("over time").lines(&plant);
+    assert!(lines.contains(&"while the plant rests, only `z1 - 2*q*z2` is identified".to_owned()), "{lines:#?}");
+}
+
+/// What holds on one component of an identity is not said of the others.
+#[test]
+fn a_rank_that_drops_on_one_component_is_listed_with_it() {
+    let (_, derivation) =
+        derive("x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: p*a, b: -p*b}\nphi: [p]\nidentities: [a*b]");
+    let result = derivation.identifiability.result.expect("proved");
+    assert_eq!(result.singular_where, ["a = 0 and b = 0"]);
 }
