@@ -129,7 +129,7 @@ fn of_dependent_rows(
     let field = Field::over(&plant.arena, &domain.facts, &rows.concat())?;
     let parted = Coefficients { plant, field: &field };
     let row = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect::<Result<Vec<_>, _>>();
-    let minors = parted.minors_of(rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
+    let minors = parted.minors_of(&rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
     if minors.is_empty() {
         return Ok(SpecialValues::unknown());
     }
@@ -172,16 +172,16 @@ struct Coefficients<'a> {
 impl Coefficients<'_> {
     /// The coefficients of a numerator; none if parameters and signals are not apart in it.
     fn of(&self, expr: Expr) -> Result<Option<Vec<(Monomial, Poly)>>, Obstacle> {
-        self.of_numerator(self.field.fraction(expr)?.numerator())
+        Ok(self.of_numerator(self.field.fraction(expr)?.numerator()))
     }
 
-    fn of_numerator(&self, numerator: &Poly) -> Result<Option<Vec<(Monomial, Poly)>>, Obstacle> {
+    fn of_numerator(&self, numerator: &Poly) -> Option<Vec<(Monomial, Poly)>> {
         let arena = &self.plant.arena;
         let parameters: BTreeSet<Symbol> = self.plant.parameters.iter().map(|parameter| parameter.symbol).collect();
         let is_moving = |v: &u32| varies(self.plant, self.field.kernel(*v));
         let moving: Vec<u32> = numerator.variables().iter().copied().filter(is_moving).collect();
         let is_apart = |v: &u32| arena.symbols_of(&[self.field.kernel(*v)]).is_disjoint(&parameters);
-        Ok(moving.iter().all(is_apart).then(|| numerator.collect(&moving)))
+        moving.iter().all(is_apart).then(|| numerator.collect(&moving))
     }
 
     /// The same of a row, one for each power product: a common denominator changes no combination.
@@ -193,7 +193,7 @@ impl Coefficients<'_> {
         }
         let mut parts = Vec::new();
         for entry in &entries {
-            let Some(part) = self.of_numerator(&self.field.over_denominator(entry, &common)?)? else { return Ok(None) };
+            let Some(part) = self.of_numerator(&self.field.over_denominator(entry, &common)?) else { return Ok(None) };
             parts.push(part);
         }
         let monomials: BTreeSet<&Monomial> = parts.iter().flatten().map(|(monomial, _)| monomial).collect();
@@ -218,11 +218,11 @@ impl Coefficients<'_> {
             };
             rows.iter().map(entry).collect::<Result<Vec<_>, _>>()
         };
-        self.minors_of(monomials.iter().map(column).collect::<Result<Vec<_>, _>>()?, size)
+        self.minors_of(&monomials.iter().map(column).collect::<Result<Vec<_>, _>>()?, size)
     }
 
     /// The minors of so many rows that are not zero; an obstacle if there are too many.
-    fn minors_of(&self, rows: Vec<Vec<Fraction>>, size: usize) -> Result<Vec<Poly>, Obstacle> {
+    fn minors_of(&self, rows: &[Vec<Fraction>], size: usize) -> Result<Vec<Poly>, Obstacle> {
         let mut chosen: Vec<Vec<usize>> = vec![Vec::new()];
         for _ in 0..size {
             let longer = |begun: &Vec<usize>| {
