@@ -2,8 +2,9 @@
 //!
 //! In: the cells of a domain, with the rows of those that do not identify all unknowns by themselves. Out: combinations
 //! of the parameters that must not be zero, and whether others were excluded. A cell has no points where two of its
-//! walls coincide, as `w < a < s` at `w = s`: what it identifies must follow from the others there. Where cells identify
-//! the unknowns only combined, their rows must not be dependent for all signals.
+//! walls coincide, as `w < a < s` at `w = s`, or where one is not there, as `w*a > 1` at `w = 0`: what it identifies
+//! must follow from the others then. Where cells identify the unknowns only combined, their rows must not be dependent
+//! for all signals.
 
 use std::collections::BTreeSet;
 
@@ -85,7 +86,7 @@ fn on_boundary(plant: &Plant, domain: &Domain, boundary: Expr) -> Domain {
     there
 }
 
-/// The combinations that are zero where two walls coincide, or a wall and an assumption.
+/// The combinations that are zero where two walls coincide, or a wall and an assumption, or where a wall loses a term.
 fn of_coinciding_walls(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>]) -> Result<SpecialValues, Obstacle> {
     let arena = &plant.arena;
     let own: Vec<_> = cells.iter().map(|cell| cell.cell.clone()).collect();
@@ -104,6 +105,12 @@ fn of_coinciding_walls(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>]) -
     let parted = Coefficients { plant, field: &field };
     let rows = borders.iter().map(|border| parted.of(*border)).collect::<Result<Vec<_>, _>>()?;
     for (index, first) in rows.iter().enumerate().take(walls.len()) {
+        // A wall without a term of its own is elsewhere, or nowhere.
+        let of_signals = first.iter().flatten().filter(|(monomial, _)| !monomial.powers().is_empty());
+        for (_, coefficient) in of_signals {
+            let zeros = common_zeros(&field, domain, std::slice::from_ref(coefficient))?;
+            zeros.nonzero.into_iter().for_each(|zero| special.add(zero));
+        }
         for second in &rows[index + 1..] {
             let Some((first, second)) = first.as_ref().zip(second.as_ref()) else {
                 special.complete = false;

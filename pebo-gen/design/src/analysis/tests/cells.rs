@@ -146,6 +146,8 @@ fn thresholds_that_coincide_are_a_condition_if_the_other_cells_identify_less() {
         ("{w: 2}", "k*sat(a) + m*sat(a/w)", &["w - 1 != 0"]),
         // Two thresholds that are numbers, and one that need not differ from either.
         ("{w: 2}", "k*max(a, 0) + m*max(a - 1, 0) + max(a, w)", &[]),
+        // Without its wall a cell is empty or the whole domain.
+        ("{w: 2, s: 1}", "k*max((w - s)*a - 1, 0) + m", &["w - s != 0"]),
         // Combined by both cells: of their rows, and not of the walls.
         ("{w: 1, s: 2, v: 3}", "(w*k + s*m)*max(a, 0) + (s*k + v*m)*min(a, 0)", &["w*v - s^2 != 0"]),
     ] {
