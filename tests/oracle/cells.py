@@ -240,7 +240,9 @@ class Answer:
                     self.wrong.append(f"UNSOUND: instant everywhere else, but of a lower rank at {here}")
             elif not fixed or found["blind_complete"]:
                 self.looked["point with a constant input" + (", a special one" if fixed else "")] += 1
-                if rank(rows) < n and not any(covers(parts, names) for parts, _ in listed if fixed or is_cell(parts)):
+                # An input that was drawn may be at a value that is listed.
+                of_values = lambda parts: fixed or is_cell(parts) or any(" = " in part for part in parts)
+                if rank(rows) < n and not any(covers(parts, names) for parts, _ in listed if of_values(parts)):
                     self.wrong.append(f"UNSOUND: identified with constant inputs, but not at {here}")
 
 
