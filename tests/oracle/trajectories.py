@@ -154,6 +154,9 @@ def holds(condition, point):
     left, sign, right = re.fullmatch(r"(.*?) (=|<|>) (.*)", condition).groups()
     read = lambda text: sympy.sympify(text.replace("^", "**"), locals=SYMBOLS | FUNCTIONS).subs(point)
     difference = read(left) - read(right)
+    # At a pole nothing is compared.
+    if not difference.is_real:
+        return False
     return {"=": difference == 0, "<": difference < 0, ">": difference > 0}[sign]
 
 
