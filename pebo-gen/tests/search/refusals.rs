@@ -281,7 +281,10 @@ fn a_declaration_with_which_a_transform_is_accepted_is_found_by_trying() {
                 g_y: {h1: A*sin(q) + o1, h2: A*cos(q) + o2}";
     let converter = "parameters: {L: 0.01, C: 1e-4, E: 12, r: 0.5, R: 50}\nx: [i]\ny: [v]\nu: [d]\n\
                      f_x: {i: (-r*i - (1 - d)*v + E)/L}\nf_y: {v: ((1 - d)*i - v/R)/C}\nclass: pebo";
-    for (lines, expected) in [(hall, "`angles: {q: 2*pi}`"), (converter, "no `class`")] {
+    let sine = "x: [g]\ny: [h]\nu: [v]\nf_x: {g: 0}\nf_y: {h: v*sin(g)}";
+    for (lines, expected) in
+        [(hall, "`angles: {q: 2*pi}`"), (converter, "no `class`"), (sine, "`assume: [-pi/2 < g < pi/2]`")]
+    {
         let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).unwrap();
         let derived = pebo_gen::derive(&source).unwrap();
         let refusal = &derived.derivation.diagnostics[0];

@@ -1,14 +1,14 @@
 //! Keeps the estimate of functions of theta among their values.
 //!
-//! In: an estimate of `eta` with its information matrix, and a model whose `eta` is a function of `theta`. Out: the value
-//! of that function which is nearest in the norm of the information, found by Gauss and Newton's method from
+//! In: an estimate of `eta` with its information matrix, and `eta` as a function of `theta`. Out: the value of that
+//! function which is nearest in the norm of the information, found by Gauss and Newton's method from
 //! `theta(eta)`; and the covariance that `eta` has as a function of `theta`.
 
 use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::linear::solve;
 use crate::numeric::sum::all_finite;
-use crate::{Information, Model, Real};
+use crate::{Functions, Information, Real};
 
 /// The number of iterations: the estimate was a value of the function one sample before, so that few are needed, and a
 /// step takes a bounded time.
@@ -21,29 +21,18 @@ const MOST_DEVIATIONS: f64 = 6.0;
 
 /// The value of the functions of theta that is nearest to an estimate; none where there are no such functions, or it is
 /// not found.
-pub(super) fn nearest<
-    M,
-    const NX: usize,
-    const NY: usize,
-    const NU: usize,
-    const NZ: usize,
-    const NR: usize,
-    const NE: usize,
->(
-    model: &M,
-    eta: &SVector<M::Scalar, NE>,
-    information: &Information<M::Scalar, NE>,
-) -> Option<SVector<M::Scalar, NE>>
-where
-    M: Model<NX, NY, NU, NZ, NR, NE>,
-{
-    let mut theta = model.theta(eta);
-    let mut at = model.functions(&theta)?;
+pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
+    functions: impl Fn(&SVector<S, NZ>) -> Option<Functions<S, NE, NZ>>,
+    mut theta: SVector<S, NZ>,
+    eta: &SVector<S, NE>,
+    information: &Information<S, NE>,
+) -> Option<SVector<S, NE>> {
+    let mut at = functions(&theta)?;
     let mut misfit = information.misfit(&(at.values - eta));
     for _ in 0..ITERATIONS {
         let Ok(step) = information.along(&(at.values - eta), &at.slopes).solve() else { break };
         let next = theta + step;
-        let Some(there) = model.functions(&next) else { break };
+        let Some(there) = functions(&next) else { break };
         let left = information.misfit(&(there.values - eta));
         // False for a NaN too.
         let is_nearer = left < misfit;
@@ -52,7 +41,7 @@ where
         }
         (theta, at, misfit) = (next, there, left);
     }
-    let most: M::Scalar = Real::from_f64(MOST_DEVIATIONS * MOST_DEVIATIONS);
+    let most: S = Real::from_f64(MOST_DEVIATIONS * MOST_DEVIATIONS);
     (misfit <= most && all_finite(&at.values)).then_some(at.values)
 }
 

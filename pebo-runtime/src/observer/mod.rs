@@ -277,7 +277,10 @@ where
         }
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
-        estimator.constrain(|eta, information| constrained::nearest(&self.model, eta, information));
+        let model = &self.model;
+        estimator.constrain(|eta, information| {
+            constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
+        });
         self.accept(Next { extension, regression, estimator }, terms, y)
     }
 

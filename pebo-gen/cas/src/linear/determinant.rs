@@ -1,6 +1,6 @@
 //! Determinants over the field of fractions.
 //!
-//! In: a square matrix. Out: its determinant. Rows over a common denominator have polynomials for entries; their minors
+//! In: a square matrix, or one with more columns than rows. Out: its determinant, or its largest minors. Rows over a common denominator have polynomials for entries; their minors
 //! of the first rows are computed once each, row by row, without a division: fractions of fractions, which elimination
 //! makes, would swell long before they cancel. Elimination takes over if there are too many minors.
 
@@ -25,14 +25,26 @@ pub fn determinant(field: &Field<'_>, rows: Vec<Vec<Fraction>>) -> Result<Fracti
     }
 }
 
+/// The numerators of the minors of all rows that are not zero, over one denominator; an obstacle if there are too many.
+pub fn largest_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Vec<Poly>, Obstacle> {
+    let (minors, _) = all_minors(field, rows)?.ok_or(Obstacle::TooLarge)?;
+    Ok(minors.into_values().collect())
+}
+
 /// By minors; none if there are too many.
 fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fraction>, Obstacle> {
-    if rows.len() >= u64::BITS as usize {
+    let Some((minors, denominator)) = all_minors(field, rows)? else { return Ok(None) };
+    let total = minors.into_values().next().unwrap_or_default();
+    Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
+}
+
+/// The minors of all rows, by the set of their columns, a bit each, and their denominator; none if there are too many.
+fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<(BTreeMap<u64, Poly>, Fraction)>, Obstacle> {
+    if rows.iter().map(Vec::len).chain([rows.len()]).any(|size| size >= u64::BITS as usize) {
         return Ok(None);
     }
     let work = field.limit();
     let mut denominator = Fraction::one();
-    // By the set of its columns, a bit each.
     let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
     for row in rows {
         let mut common = Poly::one();
@@ -53,8 +65,7 @@ fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fractio
             }
         }
     }
-    let total = minors.into_values().next().unwrap_or_default();
-    Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
+    Ok(Some((minors, denominator)))
 }
 
 /// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.

@@ -199,6 +199,13 @@ impl Regression {
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
     }
 
+    /// The derivatives of the unknowns, a row for each with an entry for each component of theta; none unless there are
+    /// more unknowns than these.
+    pub fn slopes(&self, plant: &Plant) -> Option<Vec<Vec<Expr>>> {
+        let row = |eta: &Expr| plant.theta.iter().map(|theta| plant.arena.derivative(*eta, *theta)).collect();
+        (self.eta.len() > plant.theta.len()).then(|| self.eta.iter().map(row).collect())
+    }
+
     /// Positions in the plant's outputs of the rows, for a dynamic regression.
     pub fn rows(&self) -> Vec<usize> {
         if self.kind == RegressionKind::Dynamic { self.sources.concat() } else { Vec::new() }

@@ -179,7 +179,7 @@ pub(super) fn without_unseen(
 pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
     let arena = &plant.arena;
     let rates = plant.rates();
-    let of_outputs = plant.y.iter().filter_map(|output| Some(output.rate.as_ref().or(output.value.as_ref())?.expr));
+    let of_outputs = plant.y.iter().flat_map(|output| output.rate.iter().chain(&output.value)).map(|f| f.expr);
     let identities = plant.identities.iter().map(|identity| identity.expr);
     let mut seen = arena.symbols_of(&of_outputs.chain(identities).collect::<Vec<Expr>>());
     loop {

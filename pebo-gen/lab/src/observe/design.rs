@@ -117,15 +117,9 @@ impl Design {
                 RegressionKind::Dynamic | RegressionKind::Static => None,
             },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
-            functions: if regression.eta.len() > plant.theta.len() && !settings.output {
-                let slopes = regression
-                    .eta
-                    .iter()
-                    .flat_map(|eta| plant.theta.iter().map(|theta| arena.derivative(*eta, *theta)));
-                let both: Vec<Expr> = regression.eta.iter().copied().chain(slopes).collect();
-                Some(compile(&[&plant.theta], &both)?)
-            } else {
-                None
+            functions: match regression.slopes(plant).filter(|_| !settings.output) {
+                Some(slopes) => Some(compile(&[&plant.theta], &sides(&regression.eta, &slopes))?),
+                None => None,
             },
             phi_left: compile(&[&plant.z, &y], &states)?,
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),

@@ -204,11 +204,11 @@ impl<'a> Definitions<'a> {
             }
         }
         functions.push(vector("theta", "NZ", regression.theta.clone()));
-        let theta = if regression.eta.len() > plant.theta.len() { plant.theta.clone() } else { Vec::new() };
-        if !theta.is_empty() {
-            let slopes = |eta: &Expr| theta.iter().map(|theta| arena.derivative(*eta, *theta)).collect();
+        let slopes = regression.slopes(plant);
+        let theta = if slopes.is_some() { plant.theta.clone() } else { Vec::new() };
+        if let Some(slopes) = slopes {
             functions.push(vector(ETA, "NE", regression.eta.clone()));
-            functions.push(matrix(SLOPES, "NE", "NZ", &regression.eta.iter().map(slopes).collect::<Vec<_>>()));
+            functions.push(matrix(SLOPES, "NE", "NZ", &slopes));
         }
         let states = left_inverse.x.iter().map(|state| state.1).collect();
         functions.push(vector("phi_left", "NX", states));

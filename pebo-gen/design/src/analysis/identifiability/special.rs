@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::walls;
 use pebo_cas::domain::manifold::Manifold;
-use pebo_cas::linear::determinant::determinant;
+use pebo_cas::linear::determinant::largest_minors;
 use pebo_cas::linear::rank::full_rank;
 use pebo_cas::poly::{Monomial, Poly};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -19,9 +19,6 @@ use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::crossing::{CellRows, as_on};
 use super::flow::varies;
-
-/// More minors are not worked out: the conditions are then incomplete.
-const MOST_MINORS: usize = 256;
 
 /// Conditions on the parameters.
 pub(super) struct SpecialValues {
@@ -116,7 +113,8 @@ fn of_coinciding_walls(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>]) -
                 special.complete = false;
                 continue;
             };
-            let zeros = common_zeros(&field, domain, &parted.minors(&[first, second], 2)?)?;
+            let both = parted.by_monomials(&[first, second])?;
+            let zeros = common_zeros(&field, domain, &minors(&field, &both, 2)?)?;
             special.complete &= zeros.complete;
             zeros.nonzero.into_iter().for_each(|zero| special.add(zero));
         }
@@ -134,9 +132,8 @@ fn of_dependent_rows(
     let cells: Vec<&CellRows<'_>> = cells.iter().collect();
     let Some(rows) = coefficients(plant, domain, &cells)? else { return Ok(SpecialValues::unknown()) };
     let field = Field::over(&plant.arena, &domain.facts, &rows.concat())?;
-    let parted = Coefficients { plant, field: &field };
     let row = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect::<Result<Vec<_>, _>>();
-    let minors = parted.minors_of(&rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
+    let minors = minors(&field, &rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
     if minors.is_empty() {
         return Ok(SpecialValues::unknown());
     }
@@ -203,53 +200,28 @@ impl Coefficients<'_> {
             let Some(part) = self.of_numerator(&self.field.over_denominator(entry, &common)?) else { return Ok(None) };
             parts.push(part);
         }
-        let monomials: BTreeSet<&Monomial> = parts.iter().flatten().map(|(monomial, _)| monomial).collect();
-        let row = |monomial: &&Monomial| {
-            let entry = |part: &Vec<(Monomial, Poly)>| match part.iter().find(|(own, _)| own == *monomial) {
-                Some((_, coefficient)) => self.field.of_polynomial(coefficient),
-                None => Ok(Fraction::zero()),
-            };
-            parts.iter().map(entry).collect::<Result<Vec<_>, _>>()
-        };
-        Ok(Some(monomials.iter().map(row).collect::<Result<Vec<_>, _>>()?))
+        Ok(Some(self.by_monomials(&parts.iter().collect::<Vec<_>>())?))
     }
 
-    /// The minors of formulas as rows of their coefficients.
-    fn minors(&self, rows: &[&Vec<(Monomial, Poly)>], size: usize) -> Result<Vec<Poly>, Obstacle> {
+    /// The coefficients of several formulas, a row for each power product.
+    fn by_monomials(&self, formulas: &[&Vec<(Monomial, Poly)>]) -> Result<Vec<Vec<Fraction>>, Obstacle> {
         let monomials: BTreeSet<&Monomial> =
-            rows.iter().flat_map(|row| row.iter()).map(|(monomial, _)| monomial).collect();
-        let column = |monomial: &&Monomial| {
-            let entry = |row: &&Vec<(Monomial, Poly)>| match row.iter().find(|(own, _)| own == *monomial) {
+            formulas.iter().flat_map(|formula| formula.iter()).map(|(monomial, _)| monomial).collect();
+        let row = |monomial: &&Monomial| {
+            let entry = |formula: &&Vec<(Monomial, Poly)>| match formula.iter().find(|(own, _)| own == *monomial) {
                 Some((_, coefficient)) => self.field.of_polynomial(coefficient),
                 None => Ok(Fraction::zero()),
             };
-            rows.iter().map(entry).collect::<Result<Vec<_>, _>>()
+            formulas.iter().map(entry).collect::<Result<Vec<_>, _>>()
         };
-        self.minors_of(&monomials.iter().map(column).collect::<Result<Vec<_>, _>>()?, size)
+        monomials.iter().map(row).collect()
     }
+}
 
-    /// The minors of so many rows that are not zero; an obstacle if there are too many.
-    fn minors_of(&self, rows: &[Vec<Fraction>], size: usize) -> Result<Vec<Poly>, Obstacle> {
-        let mut chosen: Vec<Vec<usize>> = vec![Vec::new()];
-        for _ in 0..size {
-            let longer = |begun: &Vec<usize>| {
-                let next = begun.last().map_or(0, |last| last + 1);
-                (next..rows.len()).map(|row| [begun.as_slice(), &[row]].concat()).collect::<Vec<_>>()
-            };
-            chosen = chosen.iter().flat_map(longer).collect();
-            if chosen.len() > MOST_MINORS {
-                return Err(Obstacle::TooLarge);
-            }
-        }
-        let mut minors = Vec::new();
-        for rows_of_one in chosen {
-            let minor = determinant(self.field, rows_of_one.into_iter().map(|row| rows[row].clone()).collect())?;
-            if !minor.is_zero() {
-                minors.push(minor.numerator().clone());
-            }
-        }
-        Ok(minors)
-    }
+/// The largest minors of rows of so many columns, of which there are more, that are not zero.
+fn minors(field: &Field<'_>, rows: &[Vec<Fraction>], columns: usize) -> Result<Vec<Poly>, Obstacle> {
+    let column = |column: usize| rows.iter().map(|row| row[column].clone()).collect();
+    largest_minors(field, &(0..columns).map(column).collect::<Vec<Vec<Fraction>>>())
 }
 
 /// The factors that polynomials in the parameters have in common; complete if they are zero at once nowhere else. Of no

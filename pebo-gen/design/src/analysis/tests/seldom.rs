@@ -251,3 +251,15 @@ fn a_rank_that_drops_on_one_component_is_listed_with_it() {
     let result = derivation.identifiability.result.expect("proved");
     assert_eq!(result.singular_where, ["a = 0 and b = 0"]);
 }
+
+/// `a*b = 0` with `a > 0` is `b = 0`.
+#[test]
+fn a_factor_that_an_assumption_excludes_is_none() {
+    let of = |assume: &str| {
+        let lines = "x: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v}\nf_y: {a: p*a, b: -p*b}\nphi: [p]\nidentities: [a*b]";
+        derive(&format!("assume: [{assume}]\n{lines}")).1
+    };
+    let result = of("a > 0").identifiability.result.expect("proved");
+    assert!(result.singular_where.is_empty() && result.everywhere_else);
+    assert_ne!(of("a > 0, b > 0").outcome, Outcome::Accepted);
+}
