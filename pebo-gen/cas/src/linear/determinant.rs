@@ -27,19 +27,27 @@ pub fn determinant(field: &Field<'_>, rows: Vec<Vec<Fraction>>) -> Result<Fracti
 
 /// The numerators of the minors of all rows that are not zero, over one denominator; an obstacle if there are too many.
 pub fn largest_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Vec<Poly>, Obstacle> {
-    let (minors, _) = all_minors(field, rows)?.ok_or(Obstacle::TooLarge)?;
-    Ok(minors.into_values().collect())
+    let minors = all_minors(field, rows)?.ok_or(Obstacle::TooLarge)?;
+    Ok(minors.numerators.into_values().collect())
 }
 
 /// By minors; none if there are too many.
 fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fraction>, Obstacle> {
-    let Some((minors, denominator)) = all_minors(field, rows)? else { return Ok(None) };
-    let total = minors.into_values().next().unwrap_or_default();
+    let Some(Minors { numerators, denominator }) = all_minors(field, rows)? else { return Ok(None) };
+    let total = numerators.into_values().next().unwrap_or_default();
     Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
 }
 
-/// The minors of all rows, by the set of their columns, a bit each, and their denominator; none if there are too many.
-fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<(BTreeMap<u64, Poly>, Fraction)>, Obstacle> {
+/// The minors of all rows that are not zero.
+struct Minors {
+    /// By the set of their columns, a bit each.
+    numerators: BTreeMap<u64, Poly>,
+    /// The denominator of all.
+    denominator: Fraction,
+}
+
+/// The minors of all rows; none if there are too many.
+fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Minors>, Obstacle> {
     if rows.iter().map(Vec::len).chain([rows.len()]).any(|size| size >= u64::BITS as usize) {
         return Ok(None);
     }
@@ -65,7 +73,7 @@ fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<(BTree
             }
         }
     }
-    Ok(Some((minors, denominator)))
+    Ok(Some(Minors { numerators: minors, denominator }))
 }
 
 /// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.
