@@ -151,13 +151,14 @@ class Plant:
 
 def holds(condition, point):
     """Whether one comparison of a listed trajectory holds at a point."""
-    left, sign, right = re.fullmatch(r"(.*?) (=|<|>) (.*)", condition).groups()
+    left, sign, right = re.fullmatch(r"(.*?) (!=|=|<|>=|>) (.*)", condition).groups()
     read = lambda text: sympy.sympify(text.replace("^", "**"), locals=SYMBOLS | FUNCTIONS).subs(point)
     difference = read(left) - read(right)
     # At a pole nothing is compared.
     if not difference.is_real:
         return False
-    return {"=": difference == 0, "<": difference < 0, ">": difference > 0}[sign]
+    signs = {"=": difference == 0, "!=": difference != 0, "<": difference < 0, ">": difference > 0, ">=": difference >= 0}
+    return signs[sign]
 
 
 class Listed:
@@ -212,7 +213,8 @@ def complaints(plant, answer, draw):
         return wrong, looked
     text = answer["text"]
     full, deficient = 0, []
-    for point in itertools.islice(plant.equilibria(), MOST_EQUILIBRIA):
+    allowed = (p for p in plant.equilibria() if all(holds(c, p) for c in answer["conditions"]))
+    for point in itertools.islice(allowed, MOST_EQUILIBRIA):
         observed = plant.at_rest(point)
         if observed.rank() == plant.n:
             full += 1

@@ -535,8 +535,8 @@ class Trajectories:
         while True:
             yield self.points.point(symbols)
 
-    def of(self, condition):
-        """Points of the trajectories of a condition, with the rows there."""
+    def of(self, condition, listed=()):
+        """Points of the trajectories of a condition, with the rows there: enough of them outside listed conditions."""
         zero = [self.plant.valued(formula(text)) for text in condition.get("zero", [])]
         positive = formulas(condition.get("positive", []))
         rest, constant = condition.get("rest"), [NAMES[name] for name in condition.get("constant", [])]
@@ -548,10 +548,9 @@ class Trajectories:
             for point, factors in self.solved(equations, zero, positive):
                 try:
                     for rows in self.remaining(point, factors, zero, positive, constant, rest):
-                        if rest is not False or any(value(rate, point) != 0 for rate in self.rates):
-                            found += 1
-                            yield rows
-                            break
+                        found += not any(self.holds(entry, rows[0]) for entry in listed)
+                        yield rows
+                        break
                 except NoValue:
                     continue
                 if found >= OF_STATEMENT:
@@ -877,7 +876,7 @@ class Certificate:
 
     def at_rest(self, claim, exceptions):
         self.sets.all, full, listed = True, 0, 0
-        for point, rows in self.sets.of({"rest": True}):
+        for point, rows in self.sets.of({"rest": True}, exceptions):
             if any(self.sets.holds(entry, point) for entry in exceptions):
                 listed += 1
             elif rows.at(point, self.width)[1] < self.width:

@@ -9,7 +9,7 @@ mod python;
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::{
-    BlindTrajectory, Derivation, Excitation, RegressionKind, Trajectories, TrajectoryCondition,
+    BlindTrajectory, Derivation, Excitation, RegressionKind, Still, Trajectories, TrajectoryCondition,
 };
 use pebo_design::model::class::Matrix;
 use pebo_design::model::{Class, Entry, Formula, Model};
@@ -194,12 +194,12 @@ fn trajectories(plant: &Plant, trajectories: &Trajectories) -> Literal {
     let (open, decided): (Vec<_>, Vec<_>) = trajectories.blind.iter().partition(|blind| blind.hidden.is_empty());
     let statement = |blind: &BlindTrajectory| {
         let mut parts = vec![("while", Literal::text(&blind.condition(plant)))];
-        parts.extend(Conditions::of(plant, &blind.condition).literals(plant));
+        parts.extend(self::parts(plant, &blind.condition));
         parts.push(("identified", texts(&blind.identifiable)));
         parts.push(("hidden", Literal::List(blind.hidden.iter().map(|direction| texts(direction)).collect())));
         dict(parts)
     };
-    let exception = |blind: &BlindTrajectory| dict(Conditions::of(plant, &blind.condition).literals(plant));
+    let exception = |blind: &BlindTrajectory| dict(parts(plant, &blind.condition));
     dict(vec![
         ("by itself", trajectories.by_itself.map_or(Literal::None, Literal::Truth)),
         ("at rest", Literal::Truth(trajectories.at_rest)),
@@ -208,58 +208,18 @@ fn trajectories(plant: &Plant, trajectories: &Trajectories) -> Literal {
     ])
 }
 
-/// A condition of trajectories in its parts, which all hold.
-#[derive(Default)]
-struct Conditions {
-    /// Formulas that are zero.
-    zero: Vec<Expr>,
-    /// Formulas that are positive.
-    positive: Vec<Expr>,
-    /// Inputs that are constant.
-    constant: Vec<Symbol>,
-    /// Whether the plant is at an equilibrium, if that is said.
-    rest: Option<bool>,
-}
-
-impl Conditions {
-    fn of(plant: &Plant, condition: &TrajectoryCondition) -> Self {
-        let arena = &plant.arena;
-        let at_value = |symbol: Symbol, value: Expr| vec![arena.sub(arena.of_symbol(symbol), value)];
-        match condition {
-            TrajectoryCondition::Equilibrium(zeros) | TrajectoryCondition::UndecidedAtRest(zeros) => {
-                Self { zero: zeros.clone(), rest: Some(true), ..Self::default() }
-            }
-            TrajectoryCondition::Constant(inputs) => Self { constant: inputs.clone(), ..Self::default() },
-            TrajectoryCondition::Value(input, value) => Self { zero: at_value(*input, *value), ..Self::default() },
-            TrajectoryCondition::Steady(symbol, value) => Self {
-                zero: at_value(*symbol, *value),
-                constant: plant.commanded().filter(|input| input != symbol).collect(),
-                ..Self::default()
-            },
-            TrajectoryCondition::Zero(zeros) => Self { zero: zeros.clone(), rest: Some(false), ..Self::default() },
-            TrajectoryCondition::Undecided(zero) => Self { zero: vec![*zero], ..Self::default() },
-            TrajectoryCondition::Cell(sides) => {
-                let positive = sides.iter().map(|(divider, side)| side.positive(arena, *divider)).collect();
-                Self { positive, ..Self::default() }
-            }
-            TrajectoryCondition::Within(sides, condition) => {
-                let mut inner = Self::of(plant, condition);
-                inner.positive.extend(sides.iter().map(|(divider, side)| side.positive(arena, *divider)));
-                inner
-            }
-        }
-    }
-
-    fn literals(&self, plant: &Plant) -> Vec<(&'static str, Literal)> {
-        let arena = &plant.arena;
-        let texts = |exprs: &[Expr]| Literal::texts(exprs.iter().map(|expr| arena.print(*expr)));
-        vec![
-            ("zero", texts(&self.zero)),
-            ("positive", texts(&self.positive)),
-            ("constant", Literal::texts(self.constant.iter().map(|input| arena.name(*input)))),
-            ("rest", self.rest.map_or(Literal::None, Literal::Truth)),
-        ]
-    }
+/// The parts of a condition of trajectories, which all hold.
+fn parts(plant: &Plant, condition: &TrajectoryCondition) -> Vec<(&'static str, Literal)> {
+    let arena = &plant.arena;
+    let TrajectoryCondition { sides, still, zeros } = condition;
+    let constant = if let Still::Inputs(inputs) = still { inputs.as_slice() } else { &[] };
+    let positive = sides.iter().map(|(divider, side)| arena.print(side.positive(arena, *divider)));
+    vec![
+        ("zero", Literal::texts(zeros.iter().map(|zero| arena.print(*zero)))),
+        ("positive", Literal::texts(positive)),
+        ("constant", Literal::texts(constant.iter().map(|input| arena.name(*input)))),
+        ("rest", if *still == Still::Plant { Literal::Truth(true) } else { Literal::None }),
+    ]
 }
 
 /// A dictionary without empty values.

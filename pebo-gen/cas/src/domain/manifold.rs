@@ -270,13 +270,14 @@ impl Solver<'_> {
         Ok(if is_safe { numerator } else { equation })
     }
 
-    /// True if an equation with these symbols may be solved for those of a group.
+    /// True if an equation with these symbols may be solved for those of a group: for constants if it holds no others.
     fn admits(&self, place: usize, occurring: &BTreeSet<Symbol>) -> bool {
         if !self.exact {
             return true;
         }
         let hidden = self.groups.first().is_some_and(|hidden| !hidden.is_disjoint(occurring));
-        place + 1 < self.groups.len() && (place == 0 || !hidden)
+        let is_of_constants = || self.groups.last().is_some_and(|constants| occurring.is_subset(constants));
+        (place == 0 || !hidden) && (place + 1 < self.groups.len() || is_of_constants())
     }
 
     /// The step for a symbol that occurs in no kernel but its own, and true if its divisor is a number.

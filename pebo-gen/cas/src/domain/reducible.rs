@@ -85,6 +85,8 @@ pub(super) fn factors(arena: &Arena, domain: &Domain, equation: Expr) -> Result<
             found.push(vec![whole]);
         }
     }
+    // Of a square that is shown as such, as `1 - cos(q)` in the half angle, nothing is shorter.
+    is_divided &= !matches!(found.as_slice(), [only] if only == &[equation]);
     Ok(match (is_open, is_divided) {
         (true, _) => Factors::Open,
         (false, true) => Factors::Several(found),

@@ -325,14 +325,14 @@ pub struct Trajectories {
     pub parameters: bool,
 }
 
-/// Trajectories on which the regression does not identify all unknowns: proved.
+/// Trajectories on which the regression provably does not identify all unknowns, or on which that is undecided.
 #[derive(Clone, Debug)]
 pub struct BlindTrajectory {
     /// The condition that defines the trajectories.
     pub condition: TrajectoryCondition,
     /// The identifiable combinations of the unknowns: of z1.. where they are theta, else of eta1..
     pub identifiable: Vec<Expr>,
-    /// Unobservable directions.
+    /// Unobservable directions: none where it is undecided.
     pub hidden: Vec<Vec<Expr>>,
 }
 
@@ -344,26 +344,26 @@ impl BlindTrajectory {
 }
 
 /// A condition that holds at all times.
-#[derive(Clone, Debug)]
-pub enum TrajectoryCondition {
-    /// The plant is at an equilibrium at which these vanish: at any, if there are none.
-    Equilibrium(Vec<Expr>),
-    /// These inputs are constant.
-    Constant(Vec<Symbol>),
-    /// The input has this value.
-    Value(Symbol, Expr),
-    /// All inputs are constant, and the input or parameter has this value.
-    Steady(Symbol, Expr),
-    /// These are zero at all times, and the plant moves.
-    Zero(Vec<Expr>),
-    /// This is zero at all times, and rows with all their derivatives may be of a lower rank: undecided.
-    Undecided(Expr),
-    /// At an equilibrium this is zero: likewise.
-    UndecidedAtRest(Vec<Expr>),
-    /// The cell on which these keep their signs: the regressor is non-smooth where one changes.
-    Cell(Vec<(Expr, Side)>),
-    /// These keep their signs, and the other holds.
-    Within(Vec<(Expr, Side)>, Box<TrajectoryCondition>),
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TrajectoryCondition {
+    /// These keep their signs: a cell of the domain, at whose border the regressor is non-smooth.
+    pub sides: Vec<(Expr, Side)>,
+    /// What does not move.
+    pub still: Still,
+    /// These are zero.
+    pub zeros: Vec<Expr>,
+}
+
+/// What does not move on a trajectory.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Still {
+    /// Nothing has to.
+    #[default]
+    Nothing,
+    /// These inputs.
+    Inputs(Vec<Symbol>),
+    /// All signals: the plant is at an equilibrium.
+    Plant,
 }
 
 /// `Phi_1' Phi_1`: the strength of the excitation at a point.

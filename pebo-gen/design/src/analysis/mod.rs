@@ -45,7 +45,7 @@ pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 pub use advice::remarks::Remarks;
 pub use design::{
     BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability,
-    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Trajectories, TrajectoryCondition,
+    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still, Trajectories, TrajectoryCondition,
     UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;

@@ -117,13 +117,18 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
         };
         matches!(families.as_slice(), [family] if values.iter().all(|value| holds(&family.domain, value)))
     };
+    // Those of all parameters: others are points of no plant of this file.
+    let of_signals = |values: &BTreeMap<Symbol, Expr>| {
+        plant.parameters.iter().all(|parameter| !values.contains_key(&parameter.symbol))
+    };
     // All equilibria rather than one of them.
     let family = match &searched {
         Ok(Ok((values, _))) if is_all(values) => None,
         Ok(Ok(_)) if families.len() != 1 => None,
-        _ => families
-            .iter()
-            .find_map(|family| Some((family, equilibrium_on(&family.domain, &family.domain.manifold.values()?)?))),
+        _ => families.iter().find_map(|family| {
+            let values = family.domain.manifold.values().filter(of_signals)?;
+            Some((family, equilibrium_on(&family.domain, &values)?))
+        }),
     };
     let (sides, complete, searched) = match (family, searched) {
         (Some((family, found)), _) => (family.distinct_sides(arena, domain), families.len() == 1, Ok(Ok(found))),

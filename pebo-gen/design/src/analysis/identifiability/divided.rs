@@ -16,9 +16,9 @@ use super::crossing::{CellRows, all_identified, driven};
 use super::flow::varies;
 use super::joined::Joined;
 use super::special;
-use super::trajectory::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
+use super::trajectory::{List, SHARE_OF_REMARKS, TrajectoryProblem, assuming, identifiable};
 use crate::analysis::design::{
-    BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, TrajectoryCondition, Verdict,
+    BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, Still, TrajectoryCondition, Verdict,
 };
 use crate::analysis::left_inverse::checking::at_phi;
 
@@ -109,7 +109,7 @@ pub(super) fn on_cells(
         joined.add(result, sides);
         if result.kind == Excitation::Never {
             joined.blind.push(BlindTrajectory {
-                condition: TrajectoryCondition::Cell(sides()),
+                condition: TrajectoryCondition { sides: sides(), ..TrajectoryCondition::default() },
                 identifiable: identifiable(arena, symbols, &hidden),
                 hidden: hidden.clone(),
             });
@@ -149,7 +149,8 @@ pub(super) fn on_cells(
     joined.exclude(special::of_cells(plant, domain, &observed, regression.eta.len()));
     joined.add_cells(plant, cells.len());
     joined.join_neighbours();
-    for wall in on_walls(plant, domain, (cascade, regression), &cells, (joined.by_itself, &joined.blind)) {
+    let there = assuming(domain, &joined.constants, &[]);
+    for wall in on_walls(plant, &there, (cascade, regression), &cells, (joined.by_itself, &joined.blind)) {
         if joined.blind.iter().all(|other| other.condition(plant) != wall.condition(plant)) {
             joined.blind.push(wall);
         }
@@ -174,28 +175,24 @@ fn on_walls(
 ) -> Vec<BlindTrajectory> {
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
-    let rows = [
-        regression.phi_1.concat(),
-        regression.primitive_1.concat(),
-        cascade.lambda.iter().flatten().flatten().copied().collect(),
-    ]
-    .concat();
-    let at_wall = |wall: Expr| {
-        let own = plant.arena.symbols_of(&[wall]);
-        let mut held: BTreeSet<Symbol> =
-            if by_itself == Some(true) { inputs.clone() } else { inputs.intersection(&own).copied().collect() };
-        // A signal that an input drives is constant on its wall, by the input, which the rows must not hold then.
-        if let Some(signal) = driven(plant, wall).filter(|_| !inputs.is_subset(&held))
-            && plant.arena.symbols_of(&rows).is_disjoint(&inputs)
-        {
-            held.insert(signal);
+    let lambda = cascade.lambda.iter().flatten().flatten();
+    let rows: Vec<Expr> =
+        [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten().chain(lambda).copied().collect();
+    let holds_inputs = !plant.arena.symbols_of(&rows).is_disjoint(&inputs);
+    let (free, steady) = (problem.whole(Still::Nothing), problem.whole(problem.inputs()));
+    let mut list = List::new(&problem, listed);
+    plant.arena.budget().share(SHARE_OF_REMARKS, || {
+        for wall in walls(cells) {
+            // A signal that an input drives is constant on its wall, by the input, which the rows must not hold then.
+            let held = driven(plant, wall).filter(|signal| !inputs.contains(signal) && !holds_inputs);
+            let moving = list.add_zero(&free, wall, &held.into_iter().collect());
+            let is_decided = if by_itself == Some(true) { list.add_zero(&steady, wall, &inputs) } else { moving };
+            if is_decided.is_err() {
+                list.leave_open(&free, Some(wall));
+            }
         }
-        problem.at_zero(wall, &held, listed).map_or_else(
-            |_| vec![BlindTrajectory::undecided(TrajectoryCondition::Undecided(wall))],
-            |(decided, _)| decided,
-        )
-    };
-    plant.arena.budget().share(SHARE_OF_REMARKS, || walls(cells).into_iter().flat_map(at_wall).collect())
+    });
+    list.statements()
 }
 
 /// No cell identifies all unknowns, and no trajectory was found that passes from one into another and identifies them.

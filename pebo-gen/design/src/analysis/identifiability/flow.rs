@@ -39,16 +39,15 @@ pub(super) struct Flow {
 
 impl Flow {
     pub(super) fn new(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Self, Obstacle> {
-        Self::along(plant, domain, cascade, &BTreeSet::new(), &BTreeMap::new())
+        Self::along(plant, domain, cascade, &BTreeSet::new())
     }
 
-    /// The trajectories on which some signals are constant and inputs are functions of others.
+    /// The trajectories on which some signals are constant.
     pub(super) fn along(
         plant: &Plant,
         domain: &Domain,
         cascade: &Cascade,
         held: &BTreeSet<Symbol>,
-        equal: &BTreeMap<Symbol, Expr>,
     ) -> Result<Self, Obstacle> {
         let arena = &plant.arena;
         let mut rates = plant.rates();
@@ -69,15 +68,34 @@ impl Flow {
         }
         let unruled = plant.y.iter().filter(|o| o.rate.is_none()).map(|o| o.symbol);
         let free = plant.commanded().chain(plant.w.iter().copied()).chain(unruled);
-        let free = free.filter(|signal| !held.contains(signal) && !equal.contains_key(signal)).collect();
+        let free = free.filter(|signal| !held.contains(signal)).collect();
         for rate in rates.values_mut() {
-            *rate = domain.analytic(arena, &[arena.substitute(*rate, equal)])[0];
+            *rate = domain.analytic(arena, &[*rate])[0];
         }
         rates.extend(held.iter().map(|signal| (*signal, arena.zero())));
         let mut flow = Self { rates, free, divisors: Vec::new() };
+        let signals = flow.free.clone();
         flow.advance(plant);
         flow.bind(plant, domain)?;
+        flow.keep(plant, domain, &signals);
         Ok(flow)
+    }
+
+    /// Gives signals without an equation the rates with which further equations of the domain hold at all times. Where
+    /// these determine none, trajectories leave the domain.
+    fn keep(&mut self, plant: &Plant, domain: &Domain, signals: &[Symbol]) {
+        let arena = &plant.arena;
+        for equation in domain.manifold.reduced(arena) {
+            let moved = domain.analytic(arena, &[self.rate(arena, equation)])[0];
+            let slopes: Vec<Expr> = self.free.iter().map(|derivative| arena.derivative(moved, *derivative)).collect();
+            // A zero of one signal is a constant of it, also where the equation has several.
+            let alone = only_signal(plant, equation).filter(|signal| signals.contains(signal));
+            let by_itself = || slopes.iter().position(|slope| alone.is_some() && !arena.is_zero(*slope));
+            let everywhere = || slopes.iter().position(|slope| domain.grants(arena, (*slope, Relation::NonZero)));
+            if let Some(index) = by_itself().or_else(everywhere) {
+                self.solve(arena, index, moved, slopes[index]);
+            }
+        }
     }
 
     /// Gives a signal without an equation the rate that an identity determines, everywhere if there is such a signal: it
@@ -98,14 +116,19 @@ impl Flow {
             };
             let slope = slopes[index];
             self.divisors.extend(everywhere.is_none().then_some(slope));
-            let derivative = self.free.remove(index);
-            let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
-            let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
-            for rate in self.rates.values_mut() {
-                *rate = arena.substitute(*rate, &value);
-            }
+            self.solve(arena, index, moved, slope);
         }
         Ok(())
+    }
+
+    /// Solves the rate of an equation for a derivative, in which it is affine.
+    fn solve(&mut self, arena: &Arena, index: usize, moved: Expr, slope: Expr) {
+        let derivative = self.free.remove(index);
+        let rest = arena.substitute(moved, &BTreeMap::from([(derivative, arena.zero())]));
+        let value = BTreeMap::from([(derivative, arena.neg(arena.div(rest, slope)))]);
+        for rate in self.rates.values_mut() {
+            *rate = arena.substitute(*rate, &value);
+        }
     }
 
     /// Gives the latest derivatives of the free signals rates of their own.
@@ -153,4 +176,11 @@ pub(super) fn without_psi(plant: &Plant, phi_1: &[Vec<Expr>]) -> Vec<Vec<Expr>> 
 pub(super) fn varies(plant: &Plant, expr: Expr) -> bool {
     let is_constant = |symbol| plant.parameters.iter().any(|known| known.symbol == symbol);
     plant.arena.symbols_of(&[expr]).into_iter().any(|symbol| !is_constant(symbol))
+}
+
+/// The only signal of an expression, if it has one alone.
+pub(super) fn only_signal(plant: &Plant, expr: Expr) -> Option<Symbol> {
+    let arena = &plant.arena;
+    let mut signals = arena.symbols_of(&[expr]).into_iter().filter(|symbol| varies(plant, arena.of_symbol(*symbol)));
+    signals.next().filter(|_| signals.next().is_none())
 }

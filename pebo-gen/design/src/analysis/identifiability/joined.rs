@@ -3,9 +3,7 @@
 //! In: claims, each on a cell on which the unknowns are identified over time or at every instant. Out: the weakest of
 //! them for the whole domain, with the trajectories of each cell on which not all unknowns are identifiable.
 
-use crate::analysis::design::{
-    BlindTrajectory, Claim, Excitation, Identifiability, Trajectories, TrajectoryCondition, Verdict,
-};
+use crate::analysis::design::{BlindTrajectory, Claim, Excitation, Identifiability, Trajectories, Verdict};
 use crate::plant::Plant;
 use pebo_cas::Expr;
 use pebo_cas::domain::cells::{Side, wall_between};
@@ -17,7 +15,8 @@ type Sides = Vec<(Expr, Side)>;
 
 /// The claims so far.
 pub(super) struct Joined {
-    constants: Vec<Expr>,
+    /// Combinations of the parameters that must not be zero.
+    pub(super) constants: Vec<Expr>,
     /// True if the conditions on the parameters are complete.
     parameters: bool,
     /// True if no input has to move.
@@ -66,7 +65,7 @@ impl Joined {
                 let is_same = |others: &Vec<BlindTrajectory>| others.iter().any(|other| key(other) == key(trajectory));
                 let mut trajectory = trajectory.clone();
                 if self.within.iter().filter(|(_, others)| is_same(others)).count() < cells {
-                    trajectory.condition = trajectory.condition.within(sides);
+                    trajectory.condition.sides.splice(0..0, sides.iter().copied());
                 }
                 if !found.iter().any(|other| key(other) == key(&trajectory)) {
                     found.push(trajectory);
@@ -80,19 +79,15 @@ impl Joined {
     /// Makes one statement of those that neighbouring cells have in common.
     pub(super) fn join_neighbours(&mut self) {
         while let Some((first, second, sides)) = self.neighbours() {
-            self.blind[first].condition = TrajectoryCondition::Cell(sides);
+            self.blind[first].condition.sides = sides;
             self.blind.remove(second);
         }
     }
 
     /// Two cells that hide the same, with the sides of both.
     fn neighbours(&self) -> Option<(usize, usize, Sides)> {
-        let cells = || {
-            self.blind.iter().enumerate().filter_map(|(index, blind)| match &blind.condition {
-                TrajectoryCondition::Cell(sides) => Some((index, sides, &blind.hidden)),
-                _ => None,
-            })
-        };
+        let cells =
+            || self.blind.iter().enumerate().filter_map(|(index, blind)| Some((index, blind.cell()?, &blind.hidden)));
         cells().find_map(|(second, sides, hidden)| {
             let mut others = cells().take_while(|(first, ..)| *first < second).filter(|(.., other)| *other == hidden);
             others.find_map(|(first, own, _)| Some((first, second, without_wall(own, sides)?)))
@@ -121,15 +116,4 @@ fn without_wall(own: &[(Expr, Side)], sides: &[(Expr, Side)]) -> Option<Sides> {
     let common: Sides = own.iter().filter(|side| sides.contains(side)).copied().collect();
     let is_whole = [own, sides].iter().all(|all| all.len() == common.len() + 1);
     (is_whole && !common.is_empty()).then_some(common)
-}
-
-impl TrajectoryCondition {
-    /// The condition on a cell.
-    fn within(self, sides: &[(Expr, Side)]) -> Self {
-        match self {
-            Self::Cell(own) => Self::Cell([sides, &own].concat()),
-            Self::Within(own, condition) => Self::Within([sides, &own].concat(), condition),
-            condition => Self::Within(sides.to_vec(), Box::new(condition)),
-        }
-    }
 }

@@ -78,8 +78,11 @@ pub(super) fn prove(
         }),
         None => decide(domain, found).unwrap_or_else(|obstacle| open(plant, &obstacle, found)),
     };
-    if let Some(trajectories) = claim.result.as_mut().and_then(|result| result.trajectories.as_mut()) {
-        trajectory::rest::add(trajectories, plant, domain, cascade, regression);
+    if let Some(result) = claim.result.as_mut()
+        && let Some(trajectories) = &mut result.trajectories
+    {
+        let domain = trajectory::assuming(domain, &result.constants, &result.positive);
+        trajectory::rest::add(trajectories, plant, &domain, cascade, regression);
     }
     claim
 }

@@ -1,57 +1,200 @@
 //! Identifiability on sets of trajectories that equations describe.
 //!
-//! In: equations that hold at all times, as the rates at equilibria, or an expression that is zero. Out: the points at
-//! which they hold, by components, and by the cells on which the rows are analytic, each with its observations.
+//! In: a set of trajectories, and equations that hold on it at all times. Out: the points at which they hold with their
+//! rates, by components, and by the cells on which the rows are analytic, each with its observations.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::analysis::design::{BlindTrajectory, TrajectoryCondition};
-use crate::analysis::identifiability::flow::Flow;
+use crate::analysis::design::{Still, TrajectoryCondition};
+use crate::analysis::identifiability::flow::{Flow, only_signal};
 use pebo_cas::domain::cells::Cell;
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr, Relation, Symbol};
+use pebo_cas::forms::tidy::shortest;
+use pebo_cas::tower::{Field, Obstacle};
+use pebo_cas::{Domain, Expr, Symbol};
 
-use super::problem::{Observation, Restriction, SHARE_OF_REMARKS, TrajectoryProblem};
+use super::problem::{Observation, TrajectoryProblem};
 
-/// Trajectories on which the rows are analytic.
+/// A set of trajectories: where they remain, and in words.
+#[derive(Clone)]
+pub(in crate::analysis::identifiability) struct Set {
+    pub(in crate::analysis::identifiability) cell: Cell,
+    pub(in crate::analysis::identifiability) condition: TrajectoryCondition,
+}
+
+/// A set on which the rows are analytic, with what is observed on it.
 pub(super) struct Family {
-    pub(super) domain: Domain,
-    pub(super) condition: TrajectoryCondition,
+    pub(super) set: Set,
     pub(super) observed: Observation,
+    /// True if a signal moves.
+    pub(super) moves: bool,
+}
+
+impl Family {
+    /// Tests whether it hides the same as another one.
+    pub(super) fn hides_as(&self, other: &Self) -> bool {
+        !self.observed.is_full() && self.observed.hidden == other.observed.hidden
+    }
 }
 
 impl TrajectoryProblem<'_> {
-    /// The points of a domain at which the equations hold too, by components and cells.
-    pub(super) fn families_of(
-        &self,
-        domain: &Domain,
-        equations: &[Expr],
-        held: &BTreeSet<Symbol>,
-        named: impl Fn(&[Expr], Vec<Expr>) -> TrajectoryCondition,
-    ) -> Result<Vec<Family>, Obstacle> {
+    /// All trajectories of the domain on which these do not move.
+    pub(in crate::analysis::identifiability) fn whole(&self, still: Still) -> Set {
+        let condition = TrajectoryCondition { still, ..TrajectoryCondition::default() };
+        Set { cell: Cell { domain: self.domain.clone(), sides: Vec::new() }, condition }
+    }
+
+    /// The equilibria.
+    pub(super) fn equilibria(&self) -> Result<Vec<Family>, Obstacle> {
+        let mut rates = self.plant.rates();
+        rates.retain(|symbol, _| self.plant.time != Some(*symbol));
+        let rates: Vec<Expr> = rates.into_values().collect();
+        if self.plant.time.is_some_and(|time| self.plant.arena.symbols_of(&rates).contains(&time)) {
+            return Ok(Vec::new());
+        }
+        let held = self.held(&Still::Plant);
+        let sets = self.subsets(&self.whole(Still::Plant), &rates, |_, special| special)?;
+        sets.into_iter().map(|set| self.observe(set, &held, false)).collect()
+    }
+
+    /// The largest sets within a set on which an expression is zero at all times: its rates are zero there too.
+    pub(super) fn at_zero(&self, set: &Set, zero: Expr, held: &BTreeSet<Symbol>) -> Result<Vec<Family>, Obstacle> {
+        // At most half of what is left, so that others follow.
+        self.plant.arena.budget().share(2, || match set.condition.still {
+            Still::Plant => {
+                let known = [set.condition.zeros.as_slice(), &[zero]].concat();
+                let named = |_: &[Expr], special: Vec<Expr>| {
+                    let new = special.into_iter().filter(|equation| !known.contains(equation));
+                    set.condition.zeros.iter().copied().chain(new).chain([zero]).collect()
+                };
+                let sets = self.subsets(set, &[zero], named)?;
+                sets.into_iter().map(|there| self.observe(there, held, false)).collect()
+            }
+            _ => self.invariant(set, zero, held),
+        })
+    }
+
+    /// The same for sets of trajectories that move.
+    fn invariant(&self, set: &Set, zero: Expr, held: &BTreeSet<Symbol>) -> Result<Vec<Family>, Obstacle> {
+        let &Self { plant, cascade, .. } = self;
+        let arena = &plant.arena;
+        let named = |own: &[Expr], _| self.distinct(own);
+        let signals: Vec<Symbol> = plant.rates().into_keys().chain(plant.commanded()).collect();
+        let mut open = vec![(set.clone(), vec![zero])];
+        let mut found = Vec::new();
+        // The rates of as many equations as there are signals determine all others.
+        for _ in 0..=signals.len() {
+            for (set, equations) in std::mem::take(&mut open) {
+                for there in self.subsets(&set, &equations, named)? {
+                    let domain = &there.cell.domain;
+                    let flow = Flow::along(plant, domain, cascade, held)?;
+                    let moves = |expr: Expr| {
+                        let rate = domain.analytic(arena, &[flow.rate(arena, expr)])[0];
+                        (!decide(arena, rate, domain).is_zero()).then_some(rate)
+                    };
+                    // Where a function of one signal is zero at all times the signal is constant.
+                    let reduced = domain.manifold.reduced(arena).into_iter();
+                    let signal = |equation| only_signal(plant, equation).map(|signal| arena.of_symbol(signal));
+                    let reduced = reduced.flat_map(|equation| [Some(equation), signal(equation)]).flatten();
+                    let rates: Vec<Expr> = reduced.filter_map(moves).collect();
+                    let is_own = |symbol: &Symbol| plant.declares(*symbol) || plant.is_of_extension(*symbol);
+                    if !arena.symbols_of(&rates).iter().all(is_own) {
+                        // An equation for the rate of an input, whose own rate is another free function.
+                        return Err(Obstacle::Unsolved(arena.print(zero)));
+                    }
+                    if !rates.is_empty() {
+                        open.push((there, rates));
+                    } else {
+                        let moves = signals.iter().any(|signal| moves(arena.of_symbol(*signal)).is_some());
+                        found.push(self.observe(there, held, moves)?);
+                    }
+                }
+            }
+        }
+        if open.is_empty() { Ok(found) } else { Err(Obstacle::TooLarge) }
+    }
+
+    /// The points of a domain at which equations hold too.
+    pub(super) fn also(&self, domain: &Domain, equations: &[Expr]) -> Domain {
+        let all = domain.manifold.equations().iter().chain(equations).copied().collect();
+        let manifold = Manifold::new(&self.plant.arena, &domain.facts, all, self.plant.elimination_order());
+        Domain { manifold, ..domain.clone() }
+    }
+
+    /// Equations none of which follows from the others and the identities: those in unmeasured states follow first.
+    fn distinct(&self, equations: &[Expr]) -> Vec<Expr> {
+        let (arena, domain) = (&self.plant.arena, self.domain);
+        let hidden = self.plant.hidden();
+        let mut left: Vec<Expr> = Vec::new();
+        for equation in equations.iter().map(|equation| self.without_denominator(*equation)) {
+            if !left.contains(&equation) {
+                left.push(equation);
+            }
+        }
+        let mut order = left.clone();
+        order.sort_by_key(|equation| !arena.depends_on(*equation, &hidden));
+        for equation in order {
+            let others: Vec<Expr> = left.iter().copied().filter(|other| *other != equation).collect();
+            let there = self.also(domain, &others);
+            let vanishes =
+                || Field::on(arena, &there, &[equation])?.fraction(equation).map(|fraction| fraction.is_zero());
+            if there.manifold.reduced(arena).contains(&equation) || vanishes().unwrap_or(false) {
+                left = others;
+            }
+        }
+        left
+    }
+
+    /// An expression that is zero where a fraction is.
+    fn without_denominator(&self, zero: Expr) -> Expr {
         let arena = &self.plant.arena;
-        let (whole, order) = (domain, self.plant.elimination_order());
+        let numerator = || -> Result<Expr, Obstacle> {
+            let field = Field::over(arena, &self.domain.facts, &[zero])?;
+            let fraction = field.fraction(zero)?;
+            let numerator = field.show(&field.of_polynomial(fraction.numerator())?);
+            Ok(if fraction.denominator().is_constant() { zero } else { shortest(arena, self.domain, numerator) })
+        };
+        numerator().unwrap_or(zero)
+    }
+
+    /// The observations on a set.
+    fn observe(&self, set: Set, held: &BTreeSet<Symbol>, moves: bool) -> Result<Family, Obstacle> {
+        let observed = self.solve(&set.cell.domain, held)?;
+        Ok(Family { set, observed, moves })
+    }
+
+    /// The points of a set at which equations hold too, by components and cells: named by all of their equations, or by
+    /// those that distinguish a component.
+    fn subsets(
+        &self,
+        set: &Set,
+        equations: &[Expr],
+        named: impl Fn(&[Expr], Vec<Expr>) -> Vec<Expr>,
+    ) -> Result<Vec<Set>, Obstacle> {
+        let arena = &self.plant.arena;
+        let (whole, order) = (&set.cell.domain, self.plant.elimination_order());
         let rows = [&self.regression.phi_1, &self.regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(self.cascade.lambda.iter().flatten().flatten()).chain(equations);
         let formulas: Vec<Expr> = formulas.copied().collect();
-        let components = domain.components(arena, equations, &formulas, &order)?;
+        let components = whole.components(arena, equations, &formulas, &order)?;
         // What distinguishes a component is not what holds on all of them.
         let reduced: Vec<Vec<Expr>> = components.iter().map(|there| there.domain.manifold.reduced(arena)).collect();
         let hidden = self.plant.hidden();
-        let mut families = Vec::new();
-        for (cell, own) in components.into_iter().zip(&reduced) {
-            let domain = cell.domain.clone();
+        let mut found = Vec::new();
+        for (component, own) in components.into_iter().zip(&reduced) {
+            let raw = [set.cell.sides.as_slice(), &component.sides].concat();
+            let mut cell = Cell { sides: raw, ..component };
             let is_own = |equation: &&Expr| !reduced.iter().all(|other| other.contains(*equation));
             let special: Vec<Expr> = own.iter().filter(is_own).copied().collect();
-            let sides = cell.distinct_sides(arena, whole);
+            let sides = cell.distinct_sides(arena, self.domain);
             // Or the equations by the branches of the cell are all that hold there.
-            let within = Domain { manifold: whole.manifold.clone(), ..domain.clone() };
+            let within = Domain { manifold: whole.manifold.clone(), ..cell.domain.clone() };
             let branches = within.without_equations().analytic(arena, equations);
             let branches = Manifold::new(arena, &within.facts, branches, order.clone()).reduced(arena);
             let others: Vec<Expr> = special.iter().filter(|equation| !branches.contains(equation)).copied().collect();
-            let all_sides = Cell { domain: within.clone(), sides: cell.sides }.distinct_sides(arena, whole);
+            let all_sides =
+                Cell { domain: within.clone(), sides: cell.sides.clone() }.distinct_sides(arena, self.domain);
             let is_shorter = others.len() + all_sides.len() < special.len() + sides.len();
             let (sides, special) = if is_shorter { (all_sides, others) } else { (sides, special) };
             let of_signals: Vec<Expr> =
@@ -60,131 +203,20 @@ impl TrajectoryProblem<'_> {
             let determined = [equations, &of_signals].concat();
             let is_enough = !of_signals.is_empty()
                 && within.components(arena, &determined, &[], &order).is_ok_and(|components| components.len() == 1);
-            let condition = named(own, if is_enough { of_signals } else { special });
+            let zeros = named(own, if is_enough { of_signals } else { special });
             let determined_by: Vec<Expr> =
                 own.iter().copied().chain(sides.iter().map(|(divider, _)| *divider)).collect();
-            let condition =
-                if sides.is_empty() { condition } else { TrajectoryCondition::Within(sides, Box::new(condition)) };
             let has_point = |domain: &Domain| domain.points(arena, &determined_by).next().is_some();
-            let mut domain = domain;
-            if !has_point(&domain) {
+            if !has_point(&cell.domain) {
                 // It may be one of other values of the parameters.
-                domain.fixed.clear();
-                if !has_point(&domain) {
+                cell.domain.fixed.clear();
+                if !has_point(&cell.domain) {
                     return Err(Obstacle::NoPoint);
                 }
             }
-            let restriction = Restriction { held: held.clone(), ..Restriction::default() };
-            let observed = self.solve_on(&domain, &restriction)?;
-            families.push(Family { domain, condition, observed });
+            let condition = TrajectoryCondition { sides, still: set.condition.still.clone(), zeros };
+            found.push(Set { cell, condition });
         }
-        Ok(families)
-    }
-
-    /// The trajectories on which an expression is zero at all times and not all unknowns are identifiable, with these
-    /// signals constant; and true if there are no others. Those that are listed, and those at which the plant rests, are
-    /// left out.
-    pub(in crate::analysis::identifiability) fn at_zero(
-        &self,
-        zero: Expr,
-        held: &BTreeSet<Symbol>,
-        listed: &[BlindTrajectory],
-    ) -> Result<(Vec<BlindTrajectory>, bool), Obstacle> {
-        let families = self.plant.arena.budget().share(SHARE_OF_REMARKS, || self.invariant(zero, held))?;
-        // Zeros within one that identifies all unknowns were not worked out.
-        let all = families.iter().all(|family| !family.observed.hidden.is_empty());
-        let is_listed = |family: &Family| {
-            let says_as_much = |blind: &&BlindTrajectory| blind.hidden.len() == family.observed.hidden.len();
-            listed.iter().filter(says_as_much).any(|blind| self.holds_in(blind, family))
-        };
-        let hidden = families.into_iter().filter(|family| !family.observed.hidden.is_empty() && !is_listed(family));
-        let mut found: Vec<BlindTrajectory> = Vec::new();
-        for blind in hidden.map(|family| self.blind(family.condition, &family.observed)) {
-            if !found.iter().any(|other| other.covers(&blind)) {
-                found.retain(|other| !blind.covers(other));
-                found.push(blind);
-            }
-        }
-        Ok((found, all))
-    }
-
-    /// Tests whether the condition of a listed trajectory holds throughout a family.
-    pub(super) fn holds_in(&self, listed: &BlindTrajectory, family: &Family) -> bool {
-        let arena = &self.plant.arena;
-        let vanishes = |zero: Expr| decide(arena, zero, &family.domain).is_zero();
-        match &listed.condition {
-            TrajectoryCondition::Value(symbol, value) | TrajectoryCondition::Steady(symbol, value) => {
-                vanishes(arena.sub(arena.of_symbol(*symbol), *value))
-            }
-            TrajectoryCondition::Undecided(zero) => vanishes(*zero),
-            TrajectoryCondition::Zero(zeros) => zeros.iter().all(|zero| vanishes(*zero)),
-            TrajectoryCondition::Cell(sides) => sides.iter().all(|(divider, side)| {
-                family.domain.implies(arena, side.positive(arena, *divider), Relation::Positive)
-            }),
-            _ => false,
-        }
-    }
-
-    /// The same trajectories by families: the largest invariant set on which the expression is zero. It vanishes with
-    /// its rates there.
-    fn invariant(&self, zero: Expr, held: &BTreeSet<Symbol>) -> Result<Vec<Family>, Obstacle> {
-        let &Self { plant, cascade, domain, .. } = self;
-        let arena = &plant.arena;
-        let known = domain.manifold.reduced(arena);
-        let declared = |symbol: Symbol| plant.is_of_extension(symbol) || plant.declares(symbol);
-        // The rate of an input that is zero at all times is zero too.
-        let is_implied = |equation: Expr, own: &[Expr]| {
-            own.len() > 1 && arena.as_symbol(equation).is_some_and(|symbol| !declared(symbol))
-        };
-        let named = |own: &[Expr], _| {
-            let own = own.iter().copied().filter(|equation| !known.contains(equation));
-            let own: Vec<Expr> = own.collect();
-            TrajectoryCondition::Zero(own.iter().copied().filter(|equation| !is_implied(*equation, &own)).collect())
-        };
-        let mut open = vec![(domain.clone(), vec![zero])];
-        let mut found = Vec::new();
-        for _ in 0..=plant.x.len() + plant.y.len() {
-            for (domain, equations) in std::mem::take(&mut open) {
-                for family in self.families_of(&domain, &equations, held, named)? {
-                    let there = &family.domain;
-                    let flow = Flow::along(plant, there, cascade, held, &BTreeMap::new())?;
-                    let moves = |expr: Expr| {
-                        let rate = there.analytic(arena, &[flow.rate(arena, expr)])[0];
-                        (!decide(arena, rate, there).is_zero()).then_some(rate)
-                    };
-                    let rates: Vec<Expr> = there.manifold.reduced(arena).into_iter().filter_map(moves).collect();
-                    if !rates.is_empty() {
-                        open.push((family.domain, rates));
-                    } else if plant.rates().into_keys().any(|signal| moves(arena.of_symbol(signal)).is_some()) {
-                        found.push(family);
-                    }
-                }
-            }
-        }
-        // The rates of as many equations as there are signals determine all others.
-        if open.is_empty() { Ok(found) } else { Err(Obstacle::TooLarge) }
-    }
-}
-
-impl BlindTrajectory {
-    /// Tests whether it is a statement on more trajectories of the same kind that says as much as another.
-    pub(super) fn covers(&self, other: &Self) -> bool {
-        self.hidden.len() == other.hidden.len() && self.condition.holds_where(&other.condition)
-    }
-}
-
-impl TrajectoryCondition {
-    /// Tests whether it has no sign and no zero that the other has not.
-    fn holds_where(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Equilibrium(own), Self::Equilibrium(zeros)) | (Self::Zero(own), Self::Zero(zeros)) => {
-                own.iter().all(|zero| zeros.contains(zero))
-            }
-            (Self::Within(own, condition), Self::Within(sides, other)) => {
-                own.iter().all(|side| sides.contains(side)) && condition.holds_where(other)
-            }
-            (condition, Self::Within(_, other)) => condition.holds_where(other),
-            _ => false,
-        }
+        Ok(found)
     }
 }

@@ -9,26 +9,26 @@
 //! rank; otherwise exact algebra gives the directions that no derivative observes. Undecided trajectories are not
 //! reported; that there are no others is reported only if each of them provably ends at once.
 
-mod problem;
-
 mod coinciding;
 mod family;
+mod list;
 mod losses;
+mod problem;
 pub(super) mod rest;
 #[cfg(test)]
 mod tests;
 pub(in crate::analysis) mod words;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Trajectories, TrajectoryCondition};
+use crate::analysis::design::{Cascade, Regression, Still, Trajectories};
 use crate::plant::Plant;
-use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr, Symbol};
+use pebo_cas::{Domain, Expr, Relation, Symbol};
 
-use losses::is_listed;
-use problem::{Observation, Restriction};
+use family::Family;
+use problem::Observation;
 
+pub(super) use list::List;
 pub(super) use problem::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// The necessary motion, and combinations of the parameters whose zeros lower the rank.
@@ -38,109 +38,110 @@ pub(super) fn of(
     cascade: &Cascade,
     regression: &Regression,
 ) -> (Trajectories, Vec<Expr>) {
-    let arena = &plant.arena;
     let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
-    let inputs: BTreeSet<Symbol> = plant.commanded().collect();
-    let held = problem.solve(&Restriction { held: inputs.clone(), ..Restriction::default() });
-    let by_itself = held.as_ref().ok().map(|observed| observed.hidden.is_empty()).or(inputs.is_empty().then_some(true));
-    let mut blind = Vec::new();
-    let mut note = |condition: TrajectoryCondition, observed: &Result<Observation, Obstacle>| {
-        let hidden = observed.as_ref().ok().filter(|observed| !observed.hidden.is_empty());
-        blind.extend(hidden.map(|observed| problem.blind(condition, observed)));
-    };
-    if by_itself != Some(true) {
-        note(TrajectoryCondition::Constant(plant.commanded().collect()), &held);
-    }
+    let inputs = problem.inputs();
+    let constant = problem.solve(domain, &problem.held(&inputs));
+    let by_itself = constant.as_ref().ok().map(Observation::is_full).or((inputs == Still::Nothing).then_some(true));
     // The shortest rows of full rank are those of the fewest moving signals.
-    let at_rest = || Restriction { held: problem.signals_at_rest(), ..Restriction::default() };
-    let still = (by_itself == Some(true)).then(|| problem.solve(&at_rest()));
+    let still = (by_itself == Some(true)).then(|| problem.solve(domain, &problem.held(&Still::Plant)));
     let free;
-    let observed =
-        if let Some(observed) = still.iter().chain([&held]).flatten().find(|observed| observed.hidden.is_empty()) {
-            Some(observed)
-        } else {
-            free = problem.solve(&Restriction::default());
+    let observed = match still.iter().chain([&constant]).flatten().find(|observed| observed.is_full()) {
+        Some(observed) => Some(observed),
+        None => {
+            free = problem.solve(domain, &BTreeSet::new());
             free.as_ref().ok()
-        };
+        }
+    };
     let special = observed.and_then(|observed| {
         let is_short = problem.check_size(&observed.stack).is_ok();
-        let worked_out = || problem.constants(&observed.stack).ok();
-        if is_short { worked_out() } else { arena.budget().share(SHARE_OF_REMARKS, worked_out) }
+        let worked_out = || problem.constants(observed).ok();
+        if is_short { worked_out() } else { plant.arena.budget().share(SHARE_OF_REMARKS, worked_out) }
     });
     let coincide = || observed.is_some_and(|observed| problem.may_coincide(&observed.stack));
     let (constants, all) = special.unwrap_or_default();
     let parameters = all && !coincide();
-    let kept = observed.filter(|_| by_itself != Some(true)).map(|observed| problem.kept(&observed.stack));
-    let undecided = |zero| BlindTrajectory::undecided(TrajectoryCondition::Undecided(zero));
-    let decided = |zero: Expr| {
-        let found = problem.at_zero(zero, &BTreeSet::new(), &[]);
-        found.map_or_else(|_| vec![undecided(zero)], |(decided, _)| decided)
-    };
-    let kept: Vec<BlindTrajectory> = kept.into_iter().flatten().flat_map(decided).collect();
-    let mut everywhere = false;
-    let short = held.as_ref().ok().filter(|observed| problem.check_size(&observed.stack).is_ok());
-    if let Some(Observation { stack, .. }) = short {
-        let mut tried: Vec<(Symbol, Expr)> = Vec::new();
-        for (condition, restriction) in problem.candidates(by_itself == Some(true), stack) {
-            if let TrajectoryCondition::Value(input, value) = &condition {
-                tried.push((*input, *value));
-            }
-            let observed = problem.solve(&restriction);
-            let is_identified = observed.as_ref().is_ok_and(|observed| observed.hidden.is_empty());
-            // Inputs that identify unknowns by their variation do not do so as constants.
-            if let (true, Some(true), TrajectoryCondition::Value(input, value)) = (is_identified, by_itself, &condition)
-            {
-                note(TrajectoryCondition::Steady(*input, *value), &problem.steady(*input, *value));
-            }
-            note(condition, &observed);
-        }
-        if by_itself == Some(true) {
-            for input in inputs.iter().filter(|input| !tried.contains(&(**input, arena.zero()))) {
-                let alone = inputs.len() == 1;
-                let condition = if alone { TrajectoryCondition::Value } else { TrajectoryCondition::Steady };
-                note(condition(*input, arena.zero()), &problem.steady(*input, arena.zero()));
-            }
-            for (parameter, value) in problem.coincidences(stack, &constants) {
-                note(TrajectoryCondition::Steady(parameter, value), &problem.steady(parameter, value));
-            }
-            let (doubtful, all) = problem.doubtful(&blind, stack);
-            blind.extend(doubtful);
-            everywhere = all;
-        }
+    let domain = &assuming(domain, &constants, &[]);
+    let problem = TrajectoryProblem { domain, ..problem };
+    let mut list = List::new(&problem, &[]);
+    match (&constant, by_itself) {
+        (Ok(observed), Some(true)) => problem.under_constant_inputs(observed, &constants, &mut list),
+        (_, Some(true)) => list.is_complete = false,
+        _ => problem.under_excitation(constant.as_ref().ok(), observed, &mut list),
     }
-    if by_itself != Some(true) {
-        let zeros = problem.columns().unwrap_or_default().into_iter();
-        let others: Vec<BlindTrajectory> =
-            zeros.filter(|zero| !is_listed(arena, &blind, *zero)).map(undecided).collect();
-        blind.extend(others);
-    }
-    blind.extend(kept);
-    (Trajectories { by_itself, at_rest: false, blind, everywhere, parameters }, constants)
+    let everywhere = list.is_complete;
+    (Trajectories { by_itself, at_rest: false, blind: list.statements(), everywhere, parameters }, constants)
+}
+
+/// A domain on which these are not zero, and these are positive.
+pub(super) fn assuming(domain: &Domain, nonzero: &[Expr], positive: &[Expr]) -> Domain {
+    let mut domain = domain.clone();
+    nonzero.iter().for_each(|expr| domain.facts.assume(*expr, Relation::NonZero));
+    positive.iter().for_each(|expr| domain.facts.assume(*expr, Relation::Positive));
+    domain
 }
 
 impl TrajectoryProblem<'_> {
-    /// Candidate trajectories.
-    fn candidates(&self, by_itself: bool, stack: &[Vec<Expr>]) -> Vec<(TrajectoryCondition, Restriction)> {
-        let inputs: Vec<Symbol> = self.plant.commanded().collect();
-        let arena = &self.plant.arena;
-        let mut found = Vec::new();
-        if !by_itself && inputs.len() > 1 {
-            for (index, &one) in inputs.iter().enumerate() {
-                let held = BTreeSet::from([one]);
-                found.push((TrajectoryCondition::Constant(vec![one]), Restriction { held, ..Restriction::default() }));
-                for &other in &inputs[index + 1..] {
-                    let equal = BTreeMap::from([(other, arena.of_symbol(one))]);
-                    found.push((
-                        TrajectoryCondition::Value(one, arena.of_symbol(other)),
-                        Restriction { equal, ..Restriction::default() },
-                    ));
-                }
+    /// Adds the trajectories that hide unknowns which are identifiable while all inputs are constant: with inputs that
+    /// move, or with constant ones.
+    fn under_constant_inputs(&self, observed: &Observation, conditions: &[Expr], list: &mut List<'_>) {
+        let Ok(zero_set) = self.zero_set(self.domain, observed) else {
+            list.is_complete = false;
+            return;
+        };
+        let (free, steady) = (self.whole(Still::Nothing), self.whole(self.inputs()));
+        let held = self.held(&steady.condition.still);
+        list.is_complete &= zero_set.all;
+        for zero in zero_set.zeros {
+            if free.condition != steady.condition {
+                // What is undecided there is so with constant inputs too.
+                let _ = list.add_zero(&free, zero, &BTreeSet::new());
+            }
+            match list.add_zero(&steady, zero, &held) {
+                Ok(is_complete) => list.is_complete &= is_complete,
+                Err(_) if self.may_remain(zero, &held) => list.leave_open(&free, Some(zero)),
+                Err(_) => list.is_complete = false,
             }
         }
-        for (input, value) in self.values(stack).unwrap_or_default() {
-            let equal = BTreeMap::from([(input, value)]);
-            found.push((TrajectoryCondition::Value(input, value), Restriction { equal, ..Restriction::default() }));
+        for zero in zero_set.constants.into_iter().filter(|zero| !conditions.contains(zero)) {
+            let families = self.at_zero(&steady, zero, &held).unwrap_or_default();
+            families.iter().for_each(|family| list.add(family));
         }
-        found
+    }
+
+    /// Adds the trajectories that hide unknowns which are identifiable under excitation, as far as rows with constant
+    /// inputs and rows of full rank show them.
+    fn under_excitation(&self, constant: Option<&Observation>, full: Option<&Observation>, list: &mut List<'_>) {
+        let arena = &self.plant.arena;
+        list.is_complete = false;
+        let mut restrict = |still: Still, observed: Option<Observation>| {
+            let Some(observed) = observed else { return };
+            list.add(&Family { set: self.whole(still), observed, moves: true });
+        };
+        let inputs: Vec<Symbol> = self.plant.commanded().collect();
+        let solved = |still: &Still| self.solve(self.domain, &self.held(still)).ok();
+        for still in std::iter::once(self.inputs()).chain(inputs.iter().map(|input| Still::Inputs(vec![*input]))) {
+            let observed = solved(&still);
+            restrict(still, observed);
+        }
+        let mut zeros: Vec<Expr> = Vec::new();
+        for (index, one) in inputs.iter().enumerate() {
+            let others = inputs[index + 1..].iter();
+            zeros.extend(others.map(|other| arena.sub(arena.of_symbol(*one), arena.of_symbol(*other))));
+        }
+        let rows = [self.rows(), constant.map(|observed| observed.stack.clone()).unwrap_or_default()].concat();
+        zeros.extend(self.zeros_of_entries(&rows).unwrap_or_default());
+        let mut of_determinant = full.and_then(|full| self.zero_set(self.domain, full).ok()).unwrap_or_default().zeros;
+        of_determinant.retain(|zero| arena.symbols_of(&[*zero]).iter().all(|symbol| self.plant.declares(*symbol)));
+        zeros.retain(|zero| !of_determinant.contains(zero));
+        let (free, nothing) = (self.whole(Still::Nothing), BTreeSet::new());
+        for zero in zeros.iter().chain(&of_determinant) {
+            if list.add_zero(&free, *zero, &nothing).is_ok() {
+                continue;
+            }
+            let remains = of_determinant.contains(zero) && self.may_remain(*zero, &nothing);
+            if remains || self.hides_an_unknown(*zero) {
+                list.leave_open(&free, Some(*zero));
+            }
+        }
     }
 }

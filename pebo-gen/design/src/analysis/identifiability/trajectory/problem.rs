@@ -1,8 +1,9 @@
-//! The observability problem on a trajectory: the directions of the unknowns that no derivative of the rows observes.
+//! The observability problem on a set of trajectories: the directions of the unknowns that no derivative of the rows
+//! observes.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::analysis::design::{Cascade, Regression};
+use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Still, TrajectoryCondition};
 use crate::analysis::identifiability::flow::{Flow, effective, without_psi};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
@@ -25,16 +26,8 @@ pub(in crate::analysis::identifiability) struct TrajectoryProblem<'a> {
     pub(in crate::analysis::identifiability) unknowns: usize,
 }
 
-/// The conditions of a trajectory at all times.
-#[derive(Default)]
-pub(super) struct Restriction {
-    /// Signals that do not move.
-    pub(super) held: BTreeSet<Symbol>,
-    /// Inputs as functions of others.
-    pub(super) equal: BTreeMap<Symbol, Expr>,
-}
-
 /// The observations of the rows with their derivatives on a trajectory.
+#[derive(Clone)]
 pub(super) struct Observation {
     /// Rows of the same rank as all derivatives.
     pub(super) stack: Vec<Vec<Expr>>,
@@ -42,26 +35,20 @@ pub(super) struct Observation {
     pub(super) hidden: Vec<Vec<Expr>>,
 }
 
-impl TrajectoryProblem<'_> {
-    /// Solves the problem on the trajectories of a restriction.
-    pub(super) fn solve(&self, restriction: &Restriction) -> Result<Observation, Obstacle> {
-        if restriction.equal.is_empty() {
-            return self.solve_on(self.domain, restriction);
-        }
-        let domain = self.domain.restricted(&self.plant.arena, &restriction.equal).ok_or(Obstacle::NoPoint)?;
-        self.solve_on(&domain, restriction)
+impl Observation {
+    /// Tests whether all unknowns are identifiable.
+    pub(super) fn is_full(&self) -> bool {
+        self.hidden.is_empty()
     }
+}
 
-    /// The same where the trajectories remain in a domain.
-    pub(super) fn solve_on(&self, domain: &Domain, restriction: &Restriction) -> Result<Observation, Obstacle> {
+impl TrajectoryProblem<'_> {
+    /// Solves the problem on the trajectories that remain in a domain while these signals are constant.
+    pub(super) fn solve(&self, domain: &Domain, held: &BTreeSet<Symbol>) -> Result<Observation, Obstacle> {
         let &Self { plant, cascade, regression, unknowns, .. } = self;
         let arena = &plant.arena;
-        let mut flow = Flow::along(plant, domain, cascade, &restriction.held, &restriction.equal)?;
-        let there = |rows: &[Vec<Expr>]| -> Vec<Vec<Expr>> {
-            rows.iter().map(|row| arena.substitute_all(row, &restriction.equal)).collect()
-        };
-        let (phi_1, primitive_1) = (there(&regression.phi_1), there(&regression.primitive_1));
-        let mut latest = effective(arena, domain, &flow, &phi_1, &primitive_1);
+        let mut flow = Flow::along(plant, domain, cascade, held)?;
+        let mut latest = effective(arena, domain, &flow, &regression.phi_1, &regression.primitive_1);
         let mut stack = without_zeros(arena, domain, without_psi(plant, &latest));
         let mut rank = proved_rank(arena, domain, &stack, unknowns);
         let mut hidden = None;
@@ -105,10 +92,37 @@ impl TrajectoryProblem<'_> {
         if self.plant.arena.postorder(&stack.concat()).len() > MOST_PARTS { Err(Obstacle::TooLarge) } else { Ok(()) }
     }
 
-    /// Solves the problem with all inputs constant, and an input or parameter at a value.
-    pub(super) fn steady(&self, symbol: Symbol, value: Expr) -> Result<Observation, Obstacle> {
-        let held = self.plant.commanded().filter(|input| *input != symbol).collect();
-        self.solve(&Restriction { held, equal: BTreeMap::from([(symbol, value)]) })
+    /// The signals that are constant.
+    pub(super) fn held(&self, still: &Still) -> BTreeSet<Symbol> {
+        match still {
+            Still::Nothing => BTreeSet::new(),
+            Still::Inputs(inputs) => inputs.iter().copied().collect(),
+            Still::Plant => self.signals_at_rest(),
+        }
+    }
+
+    /// All inputs, if there are any.
+    pub(in crate::analysis::identifiability) fn inputs(&self) -> Still {
+        let inputs: Vec<Symbol> = self.plant.commanded().collect();
+        if inputs.is_empty() { Still::Nothing } else { Still::Inputs(inputs) }
+    }
+
+    /// The signals that are constant at rest. With them the states are, and so is the input of a plain extension.
+    fn signals_at_rest(&self) -> BTreeSet<Symbol> {
+        let &Self { plant, cascade, .. } = self;
+        let rates: Vec<Expr> = plant.rates().into_values().collect();
+        let outputs = plant.y.iter().map(|output| output.symbol);
+        let extension = plant.chi.iter().copied().filter(|_| cascade.lambda.is_none());
+        let disturbances = plant.arena.symbols_of(&rates).into_iter().filter(|symbol| plant.w.contains(symbol));
+        let constant = plant.commanded().chain(outputs).chain(extension).chain(disturbances);
+        constant.filter(|symbol| plant.time != Some(*symbol)).collect()
+    }
+
+    /// The statement on trajectories that hide unknowns.
+    pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
+        let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
+        let identifiable = identifiable(&self.plant.arena, symbols, &observed.hidden);
+        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
     }
 }
 

@@ -1,14 +1,15 @@
 //! Sentences on the necessary motion and on the trajectories that hide unknowns.
 
-use crate::analysis::design::{BlindTrajectory, Trajectories, TrajectoryCondition};
+use crate::analysis::design::{BlindTrajectory, Still, Trajectories, TrajectoryCondition};
+use crate::analysis::identifiability::flow::varies;
 use crate::plant::Plant;
-use pebo_cas::Expr;
 use pebo_cas::domain::cells::Side;
+use pebo_cas::{Expr, Node};
 
 impl Trajectories {
     /// Tests whether there are cells of the domain in which not all unknowns are identifiable.
     pub fn is_divided(&self) -> bool {
-        self.blind.iter().any(|blind| matches!(blind.condition, TrajectoryCondition::Cell(_)))
+        self.blind.iter().any(|blind| blind.cell().is_some())
     }
 
     /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
@@ -18,12 +19,7 @@ impl Trajectories {
             (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
-            (Some(true), true, true)
-                if self
-                    .blind
-                    .iter()
-                    .all(|blind| matches!(blind.condition, TrajectoryCondition::UndecidedAtRest(_))) =>
-            {
+            (Some(true), true, true) if self.blind.iter().all(|blind| !blind.is_decided() && blind.is_at_rest()) => {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
             }
             (Some(true), true, true) => {
@@ -74,72 +70,66 @@ impl Trajectories {
 impl BlindTrajectory {
     /// The trajectory.
     pub fn condition(&self, plant: &Plant) -> String {
-        self.worded(plant).replace('`', "")
+        self.condition.worded(plant).replace('`', "")
     }
 
-    /// The trajectory, with formulas as code.
-    fn worded(&self, plant: &Plant) -> String {
-        self.condition.worded(plant)
+    /// Its cell, if it is a statement on all of it.
+    pub(in crate::analysis::identifiability) fn cell(&self) -> Option<&Vec<(Expr, Side)>> {
+        let TrajectoryCondition { sides, still, zeros } = &self.condition;
+        (*still == Still::Nothing && zeros.is_empty()).then_some(sides)
+    }
+
+    fn is_at_rest(&self) -> bool {
+        self.condition.still == Still::Plant
     }
 
     fn line(&self, plant: &Plant) -> String {
+        let condition = self.condition.worded(plant);
+        if !self.is_decided() {
+            return format!("while {condition}, it was not decided what is identified");
+        }
         let identifiable: Vec<String> =
             self.identifiable.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
-        if self.condition.is_undecided() {
-            return format!("while {}, it was not decided what is identified", self.worded(plant));
-        }
         let identifiable =
             if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
-        format!("while {}, {identifiable} is identified", self.worded(plant))
+        format!("while {condition}, {identifiable} is identified")
     }
 }
 
 impl TrajectoryCondition {
     /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
-        let arena = &plant.arena;
-        match self {
-            TrajectoryCondition::Equilibrium(zeros) | TrajectoryCondition::UndecidedAtRest(zeros) => {
-                let zeros = zeros.iter().map(|zero| format!(" and `{} = 0`", arena.print(*zero)));
-                format!("the plant rests{}", zeros.collect::<String>())
+        let still = match &self.still {
+            Still::Nothing => None,
+            Still::Inputs(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
+                Some("all inputs are constant".to_owned())
             }
-            TrajectoryCondition::Constant(inputs) if inputs.len() > 1 && inputs.len() == plant.commanded().count() => {
-                "all inputs are constant".to_owned()
+            Still::Inputs(inputs) => {
+                let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", plant.arena.name(*input))).collect();
+                Some(format!("{} is constant", names.join(", ")))
             }
-            TrajectoryCondition::Constant(inputs) => {
-                let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", arena.name(*input))).collect();
-                format!("{} is constant", names.join(", "))
-            }
-            TrajectoryCondition::Value(input, value) => format!("`{} = {}`", arena.name(*input), arena.print(*value)),
-            TrajectoryCondition::Steady(symbol, value) => {
-                let others = match (plant.u.contains(symbol), plant.commanded().count()) {
-                    (true, 0 | 1) | (false, 0) => "",
-                    (true, 2) => "the other input is constant and ",
-                    (true, _) => "the other inputs are constant and ",
-                    (false, 1) => "the input is constant and ",
-                    (false, _) => "the inputs are constant and ",
-                };
-                format!("{others}`{} = {}`", arena.name(*symbol), arena.print(*value))
-            }
-            TrajectoryCondition::Zero(zeros) => {
-                zeros.iter().map(|zero| format!("`{} = 0`", arena.print(*zero))).collect::<Vec<_>>().join(" and ")
-            }
-            TrajectoryCondition::Undecided(zero) => format!("`{} = 0`", arena.print(*zero)),
-            TrajectoryCondition::Cell(sides) => on_sides(plant, sides),
-            TrajectoryCondition::Within(sides, condition) => {
-                format!("{} and {}", on_sides(plant, sides), condition.worded(plant))
-            }
-        }
+            Still::Plant => Some("the plant rests".to_owned()),
+        };
+        let sides = (!self.sides.is_empty()).then(|| on_sides(plant, &self.sides));
+        let zeros = self.zeros.iter().map(|zero| format!("`{}`", equation(plant, *zero)));
+        sides.into_iter().chain(still).chain(zeros).collect::<Vec<_>>().join(" and ")
     }
+}
 
-    /// Tests whether its identifiability is undecided.
-    fn is_undecided(&self) -> bool {
-        match self {
-            Self::Undecided(_) | Self::UndecidedAtRest(_) => true,
-            Self::Within(_, condition) => condition.is_undecided(),
-            _ => false,
+/// The equation of a zero: for a symbol, a signal if it holds one, whose value is a number or another symbol.
+fn equation(plant: &Plant, zero: Expr) -> String {
+    let arena = &plant.arena;
+    if let Node::Sum(sum) = arena.node(zero) {
+        for (term, slope) in &sum.terms {
+            let is_solved = arena.as_symbol(*term).is_some() && varies(plant, *term) == varies(plant, zero);
+            let Some(inverse) = slope.recip().filter(|_| is_solved) else { continue };
+            let value = arena.sub(*term, arena.scale(zero, &inverse));
+            if arena.as_symbol(value).is_some() || arena.symbols_of(&[value]).is_empty() {
+                return format!("{} = {}", arena.print(*term), arena.print(value));
+            }
         }
     }
+    format!("{} = 0", arena.print(zero))
 }
 
 /// Signs, with formulas as code.

@@ -1,0 +1,135 @@
+//! The list of the trajectories that hide unknowns, none of which follows from another.
+
+use std::collections::BTreeSet;
+
+use crate::analysis::design::{BlindTrajectory, Still, TrajectoryCondition};
+use pebo_cas::domain::zero::decide;
+use pebo_cas::tower::Obstacle;
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
+
+use super::family::{Family, Set};
+use super::problem::TrajectoryProblem;
+
+/// Statements on trajectories.
+pub(in crate::analysis::identifiability) struct List<'a> {
+    problem: &'a TrajectoryProblem<'a>,
+    /// Statements on other domains, which hold here too.
+    known: &'a [BlindTrajectory],
+    found: Vec<(BlindTrajectory, Domain)>,
+    /// True if there are no others.
+    pub(super) is_complete: bool,
+}
+
+impl<'a> List<'a> {
+    pub(in crate::analysis::identifiability) fn new(
+        problem: &'a TrajectoryProblem<'a>,
+        known: &'a [BlindTrajectory],
+    ) -> Self {
+        Self { problem, known, found: Vec::new(), is_complete: true }
+    }
+
+    /// Adds a family that hides unknowns, unless a statement holds it.
+    pub(super) fn add(&mut self, family: &Family) {
+        if !family.observed.is_full() && !self.covers(family) {
+            let Set { cell, condition } = &family.set;
+            self.state(self.problem.blind(condition.clone(), &family.observed), cell.domain.clone());
+        }
+    }
+
+    /// Adds the trajectories of a set that hide unknowns while an expression is zero; those at which nothing moves only
+    /// if inputs alone decide that, since equilibria are worked out as such. True if these are all.
+    pub(in crate::analysis::identifiability) fn add_zero(
+        &mut self,
+        set: &Set,
+        zero: Expr,
+        held: &BTreeSet<Symbol>,
+    ) -> Result<bool, Obstacle> {
+        let mut families = self.problem.at_zero(set, zero, held)?;
+        let is_stated = match set.condition.still {
+            Still::Nothing => self.problem.is_of_inputs(zero),
+            Still::Inputs(_) => false,
+            Still::Plant => true,
+        };
+        families.retain(|family| family.moves || is_stated);
+        match families.as_slice() {
+            // Components that hide the same are one set.
+            [first, others @ ..] if !others.is_empty() && others.iter().all(|other| first.hides_as(other)) => {
+                let mut whole = set.clone();
+                whole.cell.domain = self.problem.also(&set.cell.domain, &[zero]);
+                whole.condition.zeros.push(zero);
+                let observed = first.observed.clone();
+                self.add(&Family { set: whole, observed, moves: first.moves });
+            }
+            _ => families.iter().for_each(|family| self.add(family)),
+        }
+        // Zeros within one that identifies all unknowns were not worked out.
+        Ok(families.iter().all(|family| !family.observed.is_full()))
+    }
+
+    /// Adds a statement in place of those that follow from it.
+    pub(super) fn state(&mut self, blind: BlindTrajectory, domain: Domain) {
+        let arena = &self.problem.plant.arena;
+        self.found.retain(|(other, there)| {
+            other.hidden.len() != blind.hidden.len() || !blind.condition.holds_on(arena, &other.condition.still, there)
+        });
+        self.found.push((blind, domain));
+    }
+
+    /// Adds that it is undecided what is identified on a set.
+    pub(in crate::analysis::identifiability) fn leave_open(&mut self, set: &Set, zero: Option<Expr>) {
+        let mut condition = set.condition.clone();
+        condition.zeros.extend(zero);
+        if self.known.iter().any(|blind| !blind.is_decided() && blind.condition.zeros == condition.zeros) {
+            return;
+        }
+        self.state(BlindTrajectory::undecided(condition), set.cell.domain.clone());
+    }
+
+    /// A statement that holds throughout a family and hides as many directions, or is undecided.
+    pub(super) fn covering(&self, family: &Family) -> Option<&BlindTrajectory> {
+        let Set { cell, condition } = &family.set;
+        let holds = |blind: &&BlindTrajectory| {
+            let says_as_much = !blind.is_decided() || blind.hidden.len() == family.observed.hidden.len();
+            says_as_much
+                && !family.observed.is_full()
+                && blind.condition.holds_on(&self.problem.plant.arena, &condition.still, &cell.domain)
+        };
+        self.known.iter().chain(self.found.iter().map(|(blind, _)| blind)).find(holds)
+    }
+
+    /// Tests whether what is hidden on a family is stated.
+    pub(super) fn covers(&self, family: &Family) -> bool {
+        self.covering(family).is_some_and(BlindTrajectory::is_decided)
+    }
+
+    /// The statements: those that are decided first.
+    pub(in crate::analysis::identifiability) fn statements(self) -> Vec<BlindTrajectory> {
+        let (decided, open): (Vec<_>, Vec<_>) =
+            self.found.into_iter().map(|(blind, _)| blind).partition(BlindTrajectory::is_decided);
+        [decided, open].concat()
+    }
+}
+
+impl TrajectoryCondition {
+    /// Tests whether it holds throughout a domain while these do not move.
+    fn holds_on(&self, arena: &Arena, still: &Still, domain: &Domain) -> bool {
+        let is_still = match (&self.still, still) {
+            (Still::Nothing, _) | (_, Still::Plant) => true,
+            (Still::Inputs(own), Still::Inputs(inputs)) => own.iter().all(|input| inputs.contains(input)),
+            _ => false,
+        };
+        is_still
+            && self.zeros.iter().all(|zero| decide(arena, *zero, domain).is_zero())
+            && self
+                .sides
+                .iter()
+                .all(|(divider, side)| domain.implies(arena, side.positive(arena, *divider), Relation::Positive))
+    }
+}
+
+impl BlindTrajectory {
+    /// Tests whether it is decided what is identified.
+    pub(super) fn is_decided(&self) -> bool {
+        !self.hidden.is_empty()
+    }
+}
