@@ -14,6 +14,7 @@ use pebo_cas::tower::Obstacle;
 use super::divided::{AnalyticDecision, Formulas, kind, on_cells};
 use super::flow::varies;
 use super::joined::Joined;
+use super::special::{SpecialValues, on_boundary};
 
 /// Answers on the whole domain; an obstacle where that is open.
 pub(super) fn decide(
@@ -66,7 +67,25 @@ pub(super) fn decide(
             joined.add(result, || regime.distinct_sides(&plant.arena, domain));
         }
     }
+    // The values between the regimes are in none of them.
+    for divider in walls(&regimes) {
+        let there = on_boundary(plant, domain, divider);
+        joined.exclude(match on_cells(&there, &mut Vec::new()) {
+            Ok(claim) if is_identified(&claim) => SpecialValues::none(has_no_conditions(&claim)),
+            Ok(_) => SpecialValues { nonzero: vec![divider], complete: true },
+            Err(_) => SpecialValues::none(false),
+        });
+    }
     Ok(joined.claim(plant, claims.len()))
+}
+
+/// Tests whether a claim holds for all parameters.
+fn has_no_conditions(claim: &Claim<Identifiability>) -> bool {
+    let of_trajectories = |result: &Identifiability| result.trajectories.as_ref().is_none_or(|all| all.parameters);
+    claim
+        .result
+        .as_ref()
+        .is_some_and(|result| result.constants.is_empty() && result.positive.is_empty() && of_trajectories(result))
 }
 
 /// The cells of the parameters: the signs of those of their functions that occur in the rows on a cell of the domain.

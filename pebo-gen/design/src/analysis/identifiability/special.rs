@@ -29,9 +29,9 @@ pub(super) struct SpecialValues {
 }
 
 impl SpecialValues {
-    /// Of no values anything is known.
-    fn unknown() -> Self {
-        Self { nonzero: Vec::new(), complete: false }
+    /// None are known.
+    pub(super) fn none(complete: bool) -> Self {
+        Self { nonzero: Vec::new(), complete }
     }
 
     fn add(&mut self, combination: Expr) {
@@ -46,7 +46,7 @@ pub(super) fn of_cells(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>], u
     let found = || -> Result<SpecialValues, Obstacle> {
         let is_whole = |cell: &&CellRows<'_>| cell.is_identified();
         let mut special = match cells.iter().find(is_whole) {
-            Some(_) => SpecialValues { nonzero: Vec::new(), complete: true },
+            Some(_) => SpecialValues::none(true),
             None => of_dependent_rows(plant, domain, cells, unknowns)?,
         };
         let boundaries = of_coinciding_walls(plant, domain, cells)?;
@@ -68,11 +68,11 @@ pub(super) fn of_cells(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>], u
         special.complete &= harmless < 2;
         Ok(special)
     };
-    found().unwrap_or_else(|_| SpecialValues::unknown())
+    found().unwrap_or_else(|_| SpecialValues::none(false))
 }
 
 /// A domain at values of the parameters at which a combination of them is zero.
-fn on_boundary(plant: &Plant, domain: &Domain, boundary: Expr) -> Domain {
+pub(super) fn on_boundary(plant: &Plant, domain: &Domain, boundary: Expr) -> Domain {
     let arena = &plant.arena;
     let equations = domain.manifold.equations().iter().copied().chain([boundary]).collect();
     let mut there = domain.clone();
@@ -91,7 +91,7 @@ fn of_coinciding_walls(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>]) -
     let facts = domain.facts.iter().map(|(fact, _)| fact).filter(|fact| varies(plant, *fact));
     let borders: Vec<Expr> = walls.iter().copied().chain(facts).collect();
     let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
-    let mut special = SpecialValues { nonzero: Vec::new(), complete: true };
+    let mut special = SpecialValues::none(true);
     if arena.symbols_of(&borders).is_disjoint(&parameters) {
         return Ok(special);
     }
@@ -130,12 +130,12 @@ fn of_dependent_rows(
     unknowns: usize,
 ) -> Result<SpecialValues, Obstacle> {
     let cells: Vec<&CellRows<'_>> = cells.iter().collect();
-    let Some(rows) = coefficients(plant, domain, &cells)? else { return Ok(SpecialValues::unknown()) };
+    let Some(rows) = coefficients(plant, domain, &cells)? else { return Ok(SpecialValues::none(false)) };
     let field = Field::over(&plant.arena, &domain.facts, &rows.concat())?;
     let row = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect::<Result<Vec<_>, _>>();
     let minors = minors(&field, &rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
     if minors.is_empty() {
-        return Ok(SpecialValues::unknown());
+        return Ok(SpecialValues::none(false));
     }
     common_zeros(&field, domain, &minors)
 }
@@ -227,7 +227,7 @@ fn minors(field: &Field<'_>, rows: &[Vec<Fraction>], columns: usize) -> Result<V
 /// The factors that polynomials in the parameters have in common; complete if they are zero at once nowhere else. Of no
 /// polynomials, none.
 fn common_zeros(field: &Field<'_>, domain: &Domain, polys: &[Poly]) -> Result<SpecialValues, Obstacle> {
-    let mut special = SpecialValues { nonzero: Vec::new(), complete: true };
+    let mut special = SpecialValues::none(true);
     let Some((first, others)) = polys.split_first() else { return Ok(special) };
     let arena = field.arena();
     let shown = |poly: &Poly| Ok::<_, Obstacle>(field.show(&field.of_polynomial(poly)?));

@@ -48,7 +48,7 @@ fn cells_that_the_sign_of_a_parameter_decides_are_listed_for_each_sign() {
 #[test]
 fn trajectories_on_walls_between_cells_are_listed() {
     let size = "x: [p, q]\ny: [v]\nu: [i]\nf_x: {p: \"-abs(v)*q\", q: 0}\nf_y: {v: \"p*abs(v) + q + i\"}\nphi: [p, q]";
-    lists(size, &["while `v = 0`, only `z2` is identified"]);
+    lists(size, &["while the plant rests and `v = 0`, only `z2` is identified"]);
     let input = "x: [p, q]\ny: [v, w]\nu: [u]\nf_x: {p: \"-max(u, 0)*p + w*q\", q: 0}\n\
                  f_y: {v: \"u*p + abs(v)*q\", w: u - w}\nphi: [p, q]";
     lists(

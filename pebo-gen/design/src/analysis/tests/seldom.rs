@@ -265,3 +265,23 @@ fn a_factor_that_an_assumption_excludes_is_none() {
     assert!(result.singular_where.is_empty() && result.everywhere_else);
     assert_ne!(of("a > 0, b > 0").outcome, Outcome::Accepted);
 }
+
+/// With w = 2 nothing shows p, on neither side of which the sign of `w - 2` is.
+#[test]
+fn values_between_the_signs_of_a_parameter_are_conditions() {
+    let of = |rate: &str| {
+        let lines = "parameters: {w: 3}\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {p: 0, s: 0}\nphi: [p, s]";
+        let (plant, derivation) = derive(&format!("{lines}\nf_y: {{q: \"{rate}\"}}"));
+        let result = derivation.identifiability.result.expect("proved");
+        let lines = result.trajectories.expect("over time").lines(&plant);
+        assert!(!lines.iter().any(|line| line.contains("w = 2")), "a condition excludes it: {lines:#?}");
+        result.constants.iter().map(|constant| plant.arena.print(*constant)).collect::<Vec<_>>()
+    };
+    for rate in ["p*max(v*(w - 2), 0) + s", "p*v*abs(w - 2) + s"] {
+        assert_eq!(of(rate), ["w - 2"], "{rate}");
+    }
+    assert_eq!(of("p*v*abs(w - 2) + s*v^2*abs(w - 1)"), ["w - 2", "w - 1"]);
+    for rate in ["p*v*max(w - 2, 1) + s", "p*v*(abs(w - 2) + 1) + s", "p*max(w*v, v) + s*v^2"] {
+        assert_eq!(of(rate), [""; 0], "{rate}");
+    }
+}

@@ -27,7 +27,7 @@ pub(in crate::analysis::identifiability) struct Set {
 pub(super) struct Family {
     pub(super) set: Set,
     pub(super) observed: Observation,
-    /// True if a signal moves.
+    /// True if a state or an output moves.
     pub(super) moves: bool,
 }
 
@@ -80,11 +80,11 @@ impl TrajectoryProblem<'_> {
         let &Self { plant, cascade, .. } = self;
         let arena = &plant.arena;
         let named = |own: &[Expr], _| self.distinct(own);
-        let signals: Vec<Symbol> = plant.rates().into_keys().chain(plant.commanded()).collect();
+        let signals: Vec<Symbol> = plant.rates().into_keys().collect();
         let mut open = vec![(set.clone(), vec![zero])];
         let mut found = Vec::new();
         // The rates of as many equations as there are signals determine all others.
-        for _ in 0..=signals.len() {
+        for _ in 0..=signals.len() + plant.u.len() {
             for (set, equations) in std::mem::take(&mut open) {
                 for there in self.subsets(&set, &equations, named)? {
                     let domain = &there.cell.domain;

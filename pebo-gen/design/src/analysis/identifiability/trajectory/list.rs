@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Still, TrajectoryCondition};
+use pebo_cas::domain::cells::Side;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
@@ -94,12 +95,44 @@ impl<'a> List<'a> {
                 && !family.observed.is_full()
                 && blind.condition.holds_on(&self.problem.plant.arena, &condition.still, &cell.domain)
         };
-        self.known.iter().chain(self.found.iter().map(|(blind, _)| blind)).find(holds)
+        self.all().find(holds)
     }
 
-    /// Tests whether what is hidden on a family is stated.
+    /// Tests whether what is hidden on a family is stated: of all of it, or of the cells into which others divide it.
     pub(super) fn covers(&self, family: &Family) -> bool {
-        self.covering(family).is_some_and(BlindTrajectory::is_decided)
+        let Set { cell, condition } = &family.set;
+        let is_same = |blind: &&BlindTrajectory| blind.hidden.len() == family.observed.hidden.len();
+        let all: Vec<&TrajectoryCondition> = self.all().filter(is_same).map(|blind| &blind.condition).collect();
+        let mut dividers: Vec<Expr> = all.iter().flat_map(|other| &other.sides).map(|(divider, _)| *divider).collect();
+        dividers.sort_unstable();
+        dividers.dedup();
+        !family.observed.is_full() && self.are_covering(&all, &dividers, &condition.still, &cell.domain)
+    }
+
+    /// Tests whether one of the conditions holds on each of the cells of a domain.
+    fn are_covering(&self, all: &[&TrajectoryCondition], dividers: &[Expr], still: &Still, domain: &Domain) -> bool {
+        let arena = &self.problem.plant.arena;
+        if all.iter().any(|condition| condition.holds_on(arena, still, domain)) {
+            return true;
+        }
+        let Some((divider, others)) = dividers.split_first() else { return false };
+        let mut parts: Vec<Domain> = Vec::new();
+        for side in [Side::Positive, Side::Negative] {
+            let positive = side.positive(arena, *divider);
+            if !domain.implies(arena, arena.neg(positive), Relation::NonNegative) {
+                let mut part = domain.clone();
+                part.facts.assume(positive, Relation::Positive);
+                parts.push(part);
+            }
+        }
+        if !domain.implies(arena, *divider, Relation::NonZero) {
+            parts.push(self.problem.also(domain, &[*divider]));
+        }
+        parts.iter().all(|part| self.are_covering(all, others, still, part))
+    }
+
+    fn all(&self) -> impl Iterator<Item = &BlindTrajectory> {
+        self.known.iter().chain(self.found.iter().map(|(blind, _)| blind))
     }
 
     /// The statements: those that are decided first.
