@@ -27,6 +27,6 @@ pub use crate::model::{CascadeClass, RelationForm};
 pub use class::{Class, Proposal};
 pub use formula::lower;
 pub use matrix::Matrix;
-pub use plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin};
+pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, State, TransformOrigin};
 pub use scope::Scope;
 pub use settings::Settings;

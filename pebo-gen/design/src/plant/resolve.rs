@@ -112,6 +112,7 @@ impl Plant {
             u,
             w,
             origin,
+            noisier: None,
             phi,
             phi_left: (!phi_left.is_empty()).then_some(phi_left),
             identities,
