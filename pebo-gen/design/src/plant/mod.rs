@@ -20,6 +20,7 @@ mod plant;
 mod resolve;
 mod scope;
 pub mod settings;
+mod start;
 mod terms;
 mod values;
 

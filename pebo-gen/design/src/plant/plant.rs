@@ -65,6 +65,8 @@ pub struct Plant {
     pub units: BTreeMap<Symbol, String>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
+    /// Rational values of states and outputs at the start of the simulation.
+    pub start: BTreeMap<Symbol, Expr>,
     /// The summands of the rates as written, each with its span.
     pub terms: BTreeMap<Symbol, Vec<Formula>>,
     /// The domain conditions of the formulas: denominators, radicands and the like.
@@ -347,6 +349,7 @@ impl Plant {
                 self.identities.iter().map(|identity| self.without_excluded_factors(&domain, identity.expr));
             let equations = equations.collect();
             domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, self.elimination_order());
+            domain.start = self.start.clone();
         }
         domain
     }

@@ -105,6 +105,7 @@ impl Plant {
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
             relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
             proposal,
+            start: super::start::start(&arena, model, &parameters, &outputs),
             parameters,
             x: states,
             y: outputs,

@@ -189,6 +189,7 @@ impl Sketch {
         let plant = Plant {
             origin: pebo_design::plant::TransformOrigin::Given,
             noisier: None,
+            start: BTreeMap::new(),
             class: None,
             cascade_class: None,
             relation_form: None,
