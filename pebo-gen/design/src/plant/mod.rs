@@ -22,6 +22,7 @@ mod scope;
 pub mod settings;
 mod start;
 mod terms;
+mod unmeasured;
 mod values;
 
 pub use crate::model::{CascadeClass, RelationForm};

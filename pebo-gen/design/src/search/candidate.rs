@@ -46,6 +46,21 @@ impl Candidate {
             && self.recovered() == self.plant.x.len()
     }
 
+    /// The states that move along a direction of the unknowns which the outputs do not depend on, if there is one.
+    pub(super) fn hidden_states(&self) -> Option<Vec<Symbol>> {
+        let (arena, plant) = (&self.plant.arena, &self.plant);
+        if !self.hides_states() || !self.is_linear() {
+            return None;
+        }
+        let direction = self.derivation.identifiability.result.as_ref()?.direction.as_ref()?;
+        let moves = |formula: Expr| {
+            let slopes = plant.z.iter().map(|z| arena.derivative(formula, *z));
+            !arena.is_zero(arena.sum(slopes.zip(direction).map(|(slope, along)| arena.mul(slope, *along))))
+        };
+        let inverse = self.derivation.left_inverse.result.as_ref()?;
+        Some(inverse.x.iter().filter(|(_, formula)| moves(*formula)).map(|(state, _)| *state).collect())
+    }
+
     /// The number of recovered states.
     pub fn recovered(&self) -> usize {
         self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())

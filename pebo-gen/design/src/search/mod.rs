@@ -26,6 +26,7 @@ mod declaration;
 mod found;
 mod frame;
 mod functions;
+mod partial;
 mod sample;
 #[cfg(all(test, feature = "yaml"))]
 mod tests;
@@ -110,7 +111,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
-    let declared = if found { None } else { without_unseen().or_else(helpful) };
+    let partial = || partial::partial(&problem, &candidates, class, &accepted);
+    let declared = if found { None } else { without_unseen().or_else(helpful).or_else(partial) };
     Search { verdict, candidates, declared, bound, affine, generalised, tried }
 }
 
@@ -463,12 +465,13 @@ impl Attempts<'_> {
             return;
         }
         let Some(measured) = closure::constants::measured(problem) else { return };
-        let search = problem.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
+        let candidates = || attempted(&Problem::of(&measured), Some(Class::Pebo)).candidates;
+        let candidates = problem.arena.budget().share(3, candidates);
         let proved = |candidate: &&Candidate| {
             let derivation = &candidate.derivation;
             derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
         };
-        if let Some(candidate) = search.candidates.iter().find(proved) {
+        if let Some(candidate) = candidates.iter().find(proved) {
             let closed = closure::constants::closure(problem, candidate).map(Option::unwrap_or_default);
             let closed = closed.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);

@@ -230,3 +230,25 @@ fn a_plain_cascade_is_preferred_where_no_value_of_an_output_is_needed() {
     let chosen = solve(&plant, None).candidates.swap_remove(0);
     assert_eq!((chosen.derivation.class, chosen.plant.noisier), (Class::Pebo, None));
 }
+
+#[test]
+fn states_are_recovered_without_those_that_outputs_do_not_tell_apart() {
+    let rates = "y: [q, r, s]\nu: [v]\nf_y: {q: a - q, r: b + c}";
+    let search =
+        solve(&plant(&format!("x: [a, b, c]\n{rates}\nf_x: {{a: v, b: 0, c: 0}}\ng_y: {{s: a + b + c}}")), None);
+    let (candidate, declaration) = search.declared.expect("a partial observer");
+    assert_eq!(declaration.lines(&candidate.plant), "`x: [a]`, `w: [b, c]`");
+    let written = plant(&format!("x: [a]\nw: [b, c]\n{rates}\nf_x: {{a: v}}"));
+    let written = solve(&written, None).candidates.swap_remove(0);
+    assert!(written.is_full());
+    assert_eq!(written.formulas(), candidate.formulas());
+}
+
+#[test]
+fn a_state_whose_rate_no_transform_covers_is_an_unmeasured_signal() {
+    let lines = "x: [v, d]\ny: [q, s]\nu: [f]\nf_x: {v: f, d: f*sin(d) + log(v)}\nf_y: {q: v, s: d^3}";
+    let (candidate, declaration) = solve(&plant(lines), None).declared.expect("a partial observer");
+    assert_eq!(declaration.lines(&candidate.plant), "`x: [v]`, `w: [d]`");
+    // The rate of d is unknown, and so is that v is positive.
+    assert!(candidate.plant.conditions.is_empty() && candidate.derivation.conditions.is_empty());
+}
