@@ -84,7 +84,7 @@ impl Derived {
                 (&search.declared, best.derivation.diagnostics.first_mut())
             {
                 let note = search::words::declared(candidate, declaration);
-                *first = first.clone().note(note).help(declaration.help(&plant.arena));
+                *first = first.clone().note(note).help(declaration.help(&candidate.plant));
             }
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }

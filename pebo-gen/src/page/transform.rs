@@ -2,6 +2,8 @@
 
 use pebo_design::plant::TransformOrigin;
 
+use crate::report::notes;
+
 use super::formula::{Setter, Steps};
 use super::html::Html;
 use super::subject::Subject;
@@ -23,5 +25,6 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
             steps.add(&setter.symbol(*z), &setter.expr(phi.expr), "");
         }
         html.display(&steps.finish());
+        html.list(&notes::transform(plant));
     });
 }

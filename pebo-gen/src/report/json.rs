@@ -11,7 +11,7 @@ use pebo_design::analysis::{
     BlindTrajectory, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome,
     Regression, UnusedOutput, Witness,
 };
-use pebo_design::plant::Plant;
+use pebo_design::plant::{Noisier, Plant};
 use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
 
 /// The object of one model, which [`CHECK_SCHEMA`](super::CHECK_SCHEMA) describes.
@@ -70,6 +70,16 @@ struct CostReport {
 struct TransformReport {
     origin: &'static str,
     z: Vec<String>,
+    /// The transform to which it was preferred, where that takes the noise of samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    noisier: Option<NoisierReport>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct NoisierReport {
+    phi: Vec<String>,
+    /// States with the outputs whose samples they take as they are.
+    unfiltered: IndexMap<String, Vec<String>>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -207,8 +217,11 @@ impl Report {
                 momentum: expansion.momentum.into_iter().collect(),
                 velocity: expansion.velocity.into_iter().collect(),
             }),
-            phi: (!plant.phi.is_empty())
-                .then(|| TransformReport { origin: plant.origin.word(), z: printed(arena, &plant.transform()) }),
+            phi: (!plant.phi.is_empty()).then(|| TransformReport {
+                origin: plant.origin.word(),
+                z: printed(arena, &plant.transform()),
+                noisier: plant.noisier.as_ref().map(|found| noisier(arena, found)),
+            }),
             time: plant.time.map(|time| arena.name(time)),
             cascade: Some(cascade(arena, &derivation.cascade)),
             left_inverse: Some(left_inverse(plant, derivation)),
@@ -280,6 +293,14 @@ fn witness(arena: &Arena, witness: &Witness) -> WitnessReport {
             values: compared.values.iter().map(|(low, high)| [*low, *high]).collect(),
         }),
     }
+}
+
+fn noisier(arena: &Arena, found: &Noisier) -> NoisierReport {
+    let mut unfiltered: IndexMap<String, Vec<String>> = IndexMap::new();
+    for (state, output) in &found.unfiltered {
+        unfiltered.entry(arena.name(*state)).or_default().push(arena.name(*output));
+    }
+    NoisierReport { phi: printed(arena, &found.phi), unfiltered }
 }
 
 fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {

@@ -1,9 +1,12 @@
 //! Notes on a claim beside its formulas, a sentence each: the same in text and on a page.
 
+use std::collections::BTreeSet;
+
+use pebo_cas::Symbol;
 use pebo_design::analysis::{
     Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
 };
-use pebo_design::plant::{Plant, RelationForm};
+use pebo_design::plant::{Noisier, Plant, RelationForm};
 use pebo_design::source::{counted, listed};
 
 /// The meaning of the model's verdict.
@@ -14,6 +17,25 @@ pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
         Outcome::Rejected => "a claim is refuted",
         Outcome::Undecided => "a claim could not be decided",
     }
+}
+
+/// Notes on a transform that was found: the one to which it was preferred.
+pub(crate) fn transform(plant: &Plant) -> Vec<String> {
+    let arena = &plant.arena;
+    let names = |symbols: BTreeSet<Symbol>| {
+        let names: Vec<String> = symbols.into_iter().map(|symbol| arena.name(symbol)).collect();
+        listed(names.iter().map(String::as_str))
+    };
+    let note = |noisier: &Noisier| {
+        let phi: Vec<String> = noisier.phi.iter().map(|component| arena.print(*component)).collect();
+        let (states, outputs) = noisier.unfiltered.iter().copied().unzip();
+        let (phi, states, outputs) = (phi.join(", "), names(states), names(outputs));
+        format!(
+            "preferred to `phi: [{phi}]`, in which each sample of {outputs} enters {states} with all of its noise; \
+             write that `phi` to have it"
+        )
+    };
+    plant.noisier.iter().map(note).collect()
 }
 
 /// Notes on the left inverse: the states that it does not recover, and its domain conditions on estimates.

@@ -82,7 +82,7 @@ impl SearchReport {
             candidates: search.candidates.iter().map(candidate).collect(),
             assumed: search.declared.as_ref().map(|(candidate, declaration)| AssumedReport {
                 assume: declaration.assumed(&plant.arena),
-                declare: declaration.lines(&plant.arena).replace('`', ""),
+                declare: declaration.lines(&candidate.plant).replace('`', ""),
                 phi: candidate.formulas(),
             }),
             bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),

@@ -19,7 +19,9 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     expansion(&mut text, plant);
     if plant.origin == TransformOrigin::Found {
         let components = plant.transform().into_iter().enumerate();
-        let lines: Vec<String> = components.map(|(i, e)| format!("z{} = {}", i + 1, plant.arena.print(e))).collect();
+        let mut lines: Vec<String> =
+            components.map(|(i, e)| format!("z{} = {}", i + 1, plant.arena.print(e))).collect();
+        lines.extend(notes::transform(plant));
         block(&mut text, "phi", plant.origin.word(), &lines);
     }
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));

@@ -16,7 +16,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::certified::System;
-use super::solution::{Partner, Root, Solution, Step};
+use super::solution::{Partner, Root, Solution, Step, vanishes};
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Node, Symbol};
@@ -163,14 +163,6 @@ impl Manifold {
         let solution = Solver { arena, facts: &facts, groups: &self.groups, exact: false }.solve(equations).ok()?;
         solution.open.is_empty().then_some(solution)
     }
-}
-
-fn vanishes(arena: &Arena, constant: Expr) -> bool {
-    arena.is_zero(constant)
-        || arena.is_satisfied(constant)
-        || Field::over(arena, &Facts::new(), &[constant])
-            .and_then(|field| field.fraction(constant))
-            .is_ok_and(|fraction| fraction.is_zero())
 }
 
 /// Solves equations for symbols.
@@ -469,6 +461,45 @@ mod tests {
         let sum = arena.add(arena.mul(a, a), arena.mul(b, b));
         assert!(domain(&arena, &[circle(&arena, 1)]).implies(&arena, sum, Relation::Positive));
         assert!(!Domain::default().implies(&arena, sum, Relation::Positive));
+    }
+
+    /// The domain with these values to start from.
+    fn started(domain: Domain, start: &[(Expr, i64)], arena: &Arena) -> Domain {
+        let start = start.iter().filter_map(|(e, value)| Some((arena.as_symbol(*e)?, arena.number(*value)))).collect();
+        Domain { start, ..domain }
+    }
+
+    #[test]
+    fn a_start_on_the_manifold_is_the_first_point() {
+        let arena = Arena::new();
+        let [a, b, c, _] = symbols(&arena);
+        // A circle by steps, and a product far from values that are drawn.
+        let mut far = domain(&arena, &[arena.sub(arena.mul(a, b), c)]);
+        far.facts.assume(arena.sub(c, arena.number(1_000_000)), Relation::Positive);
+        let circle = domain(&arena, &[circle(&arena, 25)]);
+        assert!(far.points(&arena, &[a]).next().is_none());
+        for (domain, start) in [(far, vec![(a, 2000), (b, 1000), (c, 2_000_000)]), (circle, vec![(a, -3), (b, 4)])] {
+            let domain = started(domain, &start, &arena);
+            let point = domain.points(&arena, &[a]).next().expect("the start");
+            assert_eq!(point, domain.start);
+        }
+    }
+
+    #[test]
+    fn a_start_beside_the_manifold_leads_to_a_point_of_it() {
+        let arena = Arena::new();
+        let [a, b, c, _] = symbols(&arena);
+        let mut far = domain(&arena, &[arena.sub(arena.mul(a, b), c)]);
+        far.facts.assume(arena.sub(c, arena.number(1_000_000)), Relation::Positive);
+        let far = started(far, &[(a, 2000), (b, 1000), (c, 5)], &arena);
+        let point = far.points(&arena, &[a]).next().expect("a point near the start");
+        assert!(far.contains(&arena, &point) && point != far.start);
+        // Where a root vanishes, the manifold is no graph.
+        let [tip, square] = [circle(&arena, 25), arena.mul(a, a)].map(|equation| domain(&arena, &[equation]));
+        let tip = started(tip, &[(a, 0), (b, 5)], &arena);
+        assert!(tip.points(&arena, &[a]).all(|point| tip.contains(&arena, &point)));
+        let square = started(square, &[(a, 0)], &arena);
+        assert!(square.points(&arena, &[a]).next().is_none());
     }
 
     #[test]

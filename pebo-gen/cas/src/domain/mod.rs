@@ -56,6 +56,8 @@ pub struct Domain {
     pub fixed: Point,
     /// Equations that hold.
     pub manifold: Manifold,
+    /// Rational values near which, or at which, points that satisfy the equations are looked for first.
+    pub start: Point,
     /// Calls and roots that the author writes: results may be printed with them.
     pub written: Rc<BTreeSet<Expr>>,
 }
@@ -100,16 +102,28 @@ impl Domain {
         let failures = Rc::new(Cell::new(0));
         let counted = Rc::clone(&failures);
         let goes_on = move || !arena.budget().is_exhausted() && counted.get() < MOST_FAILURES;
-        (0..trials).take_while(move |_| goes_on()).filter_map(move |trial| {
+        let is_started = !equations.is_empty() && trials > 0 && symbols.iter().any(|s| self.start.contains_key(s));
+        let started = is_started.then_some((0, true)).into_iter();
+        let trials = started.chain((0..trials).map(|trial| (trial, false)));
+        trials.take_while(move |_| goes_on()).filter_map(move |(trial, is_start)| {
             arena.budget().take(STEPS_OF_A_VALUE * symbols.len() as u64);
             let mut draw = RationalGenerator::new(trial);
             let given = |symbol: &Symbol| Some((*symbol, *self.fixed.get(symbol)?));
             let mut point: Point = symbols.iter().filter(|symbol| !solved.contains(symbol)).filter_map(given).collect();
             for (index, symbol) in &free {
-                let value = confined.draw(arena, *symbol, &point, |range| draw.value(range, *index));
+                let started = self.start.get(symbol).copied().filter(|_| is_start);
+                let drawn = || confined.draw(arena, *symbol, &point, |range| draw.value(range, *index));
+                let value = started.unwrap_or_else(drawn);
                 point.insert(*symbol, value);
             }
-            let completed = plan.complete(arena, &mut point, || draw.choice());
+            let at_start = if is_start { plan.at(arena, &point, &self.start) } else { None };
+            let completed = match at_start {
+                Some(values) => {
+                    point.extend(values);
+                    Some(())
+                }
+                None => plan.complete(arena, &mut point, || draw.choice()),
+            };
             if plan.is_search() {
                 failures.set(if completed.is_none() { failures.get() + 1 } else { 0 });
             }

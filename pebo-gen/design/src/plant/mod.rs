@@ -20,13 +20,15 @@ mod plant;
 mod resolve;
 mod scope;
 pub mod settings;
+mod start;
 mod terms;
+mod unmeasured;
 mod values;
 
 pub use crate::model::{CascadeClass, RelationForm};
 pub use class::{Class, Proposal};
 pub use formula::lower;
 pub use matrix::Matrix;
-pub use plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin};
+pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, State, TransformOrigin};
 pub use scope::Scope;
 pub use settings::Settings;

@@ -52,6 +52,8 @@ pub struct Plant {
     pub phi: Vec<Formula>,
     /// The origin of the transform.
     pub origin: TransformOrigin,
+    /// The transform that was found too, where this one is preferred for the noise of the sensors.
+    pub noisier: Option<Noisier>,
     /// The left inverse as the author gave it: states with formulas in z and y.
     pub phi_left: Option<Vec<(Symbol, Formula)>>,
     /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of
@@ -63,6 +65,8 @@ pub struct Plant {
     pub units: BTreeMap<Symbol, String>,
     /// The domain that the author assumes.
     pub assumptions: Vec<Assumption>,
+    /// Rational values of states and outputs at the start of the simulation.
+    pub start: BTreeMap<Symbol, Expr>,
     /// The summands of the rates as written, each with its span.
     pub terms: BTreeMap<Symbol, Vec<Formula>>,
     /// The domain conditions of the formulas: denominators, radicands and the like.
@@ -101,6 +105,15 @@ impl TransformOrigin {
             Self::Found => "found",
         }
     }
+}
+
+/// A transform that is accepted and of a plainer form than another, which takes fewer samples as they are.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Noisier {
+    /// Its components.
+    pub phi: Vec<Expr>,
+    /// States, each with an output whose samples its left inverse takes with all of their noise.
+    pub unfiltered: Vec<(Symbol, Symbol)>,
 }
 
 /// A constant of the plant.
@@ -186,7 +199,20 @@ impl Plant {
         }
         let phi = transform.iter().map(|component| Formula { expr: *component, span }).collect();
         let (origin, proposal) = (TransformOrigin::Found, Proposal::default());
-        Self { phi, origin, proposal, phi_left: None, conditions, z, chi, theta, xi, psi, ..self.clone() }
+        Self {
+            phi,
+            origin,
+            noisier: None,
+            proposal,
+            phi_left: None,
+            conditions,
+            z,
+            chi,
+            theta,
+            xi,
+            psi,
+            ..self.clone()
+        }
     }
 
     /// The same plant where these are positive.
@@ -323,6 +349,7 @@ impl Plant {
                 self.identities.iter().map(|identity| self.without_excluded_factors(&domain, identity.expr));
             let equations = equations.collect();
             domain.manifold = Manifold::new(&self.arena, &domain.facts, equations, self.elimination_order());
+            domain.start = self.start.clone();
         }
         domain
     }

@@ -3,7 +3,7 @@
 use crate::analysis::{Class, Derivation, Excitation, Outcome, Verdict};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::{Arena, Expr};
+use pebo_cas::{Arena, Expr, Symbol};
 
 use super::problem::Problem;
 
@@ -46,30 +46,65 @@ impl Candidate {
             && self.recovered() == self.plant.x.len()
     }
 
+    /// The states that move along a direction of the unknowns which the outputs do not depend on, if there is one.
+    pub(super) fn hidden_states(&self) -> Option<Vec<Symbol>> {
+        let (arena, plant) = (&self.plant.arena, &self.plant);
+        if !self.hides_states() || !self.is_linear() {
+            return None;
+        }
+        let direction = self.derivation.identifiability.result.as_ref()?.direction.as_ref()?;
+        let moves = |formula: Expr| {
+            let slopes = plant.z.iter().map(|z| arena.derivative(formula, *z));
+            !arena.is_zero(arena.sum(slopes.zip(direction).map(|(slope, along)| arena.mul(slope, *along))))
+        };
+        let inverse = self.derivation.left_inverse.result.as_ref()?;
+        Some(inverse.x.iter().filter(|(_, formula)| moves(*formula)).map(|(state, _)| *state).collect())
+    }
+
     /// The number of recovered states.
     pub fn recovered(&self) -> usize {
         self.derivation.left_inverse.result.as_ref().map_or(0, |inverse| inverse.x.len())
     }
 
     /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
-    /// affine in z, a plain cascade, few components, unknowns identifiable at once, and is short.
+    /// affine in z, takes few samples as they are, and has the plainer form.
     pub(super) fn merit(&self) -> impl Ord + use<> {
+        (self.standing(), self.unfiltered().len(), self.form())
+    }
+
+    /// The order of candidates by what they are worth whatever the noise of the sensors is.
+    pub(super) fn standing(&self) -> impl Ord + use<> {
         let accepted = match self.derivation.outcome {
             Outcome::Accepted => 0,
             Outcome::Undecided => 1,
             Outcome::Rejected => 2,
         };
+        let missing = self.plant.x.len() - self.recovered().min(self.plant.x.len());
+        (accepted, missing, self.copies_an_output(), !self.is_linear())
+    }
+
+    /// The order of candidates by their form: a plain cascade, few components, unknowns identifiable at once, and short.
+    pub(super) fn form(&self) -> impl Ord + use<> {
         let kind = self.derivation.identifiability.result.as_ref().map(|result| result.kind);
         (
-            accepted,
-            self.plant.x.len() - self.recovered().min(self.plant.x.len()),
-            self.copies_an_output(),
-            !self.is_linear(),
             self.derivation.class != Class::Pebo,
             self.plant.phi.len(),
             kind != Some(Excitation::Instant),
             size(&self.plant.arena, &self.plant.transform()),
         )
+    }
+
+    /// The states that the left inverse makes of samples of outputs which are given by their values, each with such an
+    /// output. In the regression, where the value is an equation, the noise of samples is averaged; here it is not.
+    pub(super) fn unfiltered(&self) -> Vec<(Symbol, Symbol)> {
+        let arena = &self.plant.arena;
+        let given: Vec<Symbol> = self.plant.y.iter().filter(|y| y.value.is_some()).map(|y| y.symbol).collect();
+        let taken = |(state, formula): &(Symbol, Expr)| {
+            let held = arena.symbols_of(&[*formula]);
+            let state = *state;
+            given.iter().copied().filter(move |output| held.contains(output)).map(move |output| (state, output))
+        };
+        self.derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x).flat_map(taken).collect()
     }
 
     /// Tests whether a state is recovered with all the noise of an output that determines it: by a component that is

@@ -1,8 +1,8 @@
 //! Declarations with which a transform is accepted, found by trying them.
 //!
 //! In: a search without a transform that is accepted. Out: signs of states, angles among them, bounds of these, any
-//! class of cascade, or the plant without states that no output depends on, where with it all claims of a transform are
-//! proved. Whether the plant has the property only its author knows.
+//! class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals,
+//! where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
 
 use std::collections::BTreeSet;
 
@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::analysis::{Class, Verdict};
 use crate::plant::Plant;
+use crate::source;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::candidate::Candidate;
@@ -31,11 +32,14 @@ pub enum Declaration {
     AnyClass,
     /// These states are left out: no output depends on them.
     Without(Vec<Symbol>),
+    /// These states are unmeasured signals with an unknown rate, and are not recovered.
+    Unmeasured(Vec<Symbol>),
 }
 
 impl Declaration {
-    /// The lines of the model file.
-    pub fn lines(&self, arena: &Arena) -> String {
+    /// The lines of the model file of the plant with it.
+    pub fn lines(&self, plant: &Plant) -> String {
+        let arena = &plant.arena;
         let listed = |entries: Vec<String>| entries.join(", ");
         match self {
             Self::Positive(states) => format!("`assume: [{}]`", listed(signs(arena, states))),
@@ -50,14 +54,32 @@ impl Declaration {
                 let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
                 format!("no {}", listed(names))
             }
+            Self::Unmeasured(_) => {
+                let states: Vec<String> = plant.x.iter().map(|state| arena.name(state.symbol)).collect();
+                let signals: Vec<String> = plant.w.iter().map(|signal| arena.name(*signal)).collect();
+                format!("`x: [{}]`, `w: [{}]`", listed(states), listed(signals))
+            }
         }
     }
 
-    /// The advice to write it.
-    pub fn help(&self, arena: &Arena) -> String {
+    /// The advice to write it, for the plant with it.
+    pub fn help(&self, plant: &Plant) -> String {
+        let arena = &plant.arena;
         match self {
             Self::Positive(_) | Self::Angles(_) | Self::Bounded(_) => {
-                format!("write {}, if that holds of the plant", self.lines(arena))
+                format!("write {}, if that holds of the plant", self.lines(plant))
+            }
+            Self::Unmeasured(states) => {
+                let names = |symbols: Vec<Symbol>| {
+                    let names: Vec<String> = symbols.into_iter().map(|symbol| arena.name(symbol)).collect();
+                    source::listed(names.iter().map(String::as_str))
+                };
+                let recovered = names(plant.x.iter().map(|state| state.symbol).collect());
+                let (lines, left_out) = (self.lines(plant), names(states.clone()));
+                format!(
+                    "measure another signal, or for {recovered} alone write {lines} and leave out what `f_x`, `g_y` and \
+                     `identities` say of {left_out}"
+                )
             }
             Self::AnyClass => "leave out `class`".to_owned(),
             Self::Without(states) => {
@@ -73,7 +95,7 @@ impl Declaration {
         match self {
             Self::Positive(states) => signs(arena, states),
             Self::Bounded(angles) => bounds(arena, angles),
-            Self::Angles(_) | Self::AnyClass | Self::Without(_) => Vec::new(),
+            Self::Angles(_) | Self::AnyClass | Self::Without(_) | Self::Unmeasured(_) => Vec::new(),
         }
     }
 }
@@ -91,7 +113,7 @@ fn bounds(arena: &Arena, angles: &[(Symbol, Expr)]) -> Vec<String> {
 }
 
 /// The search for the best transform of a plant, if one is accepted.
-type Accepted<'a> = &'a dyn Fn(&Plant, Option<Class>) -> Option<Candidate>;
+pub(super) type Accepted<'a> = &'a dyn Fn(&Plant, Option<Class>) -> Option<Candidate>;
 
 /// The first declaration with which a transform recovers all states.
 pub(super) fn helpful(

@@ -26,6 +26,7 @@ mod declaration;
 mod found;
 mod frame;
 mod functions;
+mod partial;
 mod sample;
 #[cfg(all(test, feature = "yaml"))]
 mod tests;
@@ -34,7 +35,7 @@ pub mod words;
 use std::collections::BTreeSet;
 
 use crate::analysis::{Class, Derivation, Verdict};
-use crate::plant::{Plant, TransformOrigin};
+use crate::plant::{Noisier, Plant, TransformOrigin};
 use pebo_cas::Expr;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::tower::Obstacle;
@@ -71,7 +72,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let mut attempts = attempted(&problem, class);
     let (candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
     let found = candidates.first().is_some_and(Candidate::is_full);
-    let plain = found && candidates.first().is_some_and(|c| c.derivation.class == Class::Pebo);
+    let plain = candidates.iter().any(|c| c.is_full() && c.derivation.class == Class::Pebo);
     let (affine, bound) = if plain || class == Some(Class::Gpebo) {
         (None, None)
     } else {
@@ -110,7 +111,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
-    let declared = if found { None } else { without_unseen().or_else(helpful) };
+    let partial = || partial::partial(&problem, &candidates, class, &accepted);
+    let declared = if found { None } else { without_unseen().or_else(helpful).or_else(partial) };
     Search { verdict, candidates, declared, bound, affine, generalised, tried }
 }
 
@@ -135,7 +137,20 @@ fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> Attempts<'a>
         attempts.candidates.retain(|candidate| candidate.derivation.class == class);
     }
     attempts.candidates.sort_by_cached_key(Candidate::merit);
+    let noisier = noisier(&attempts.candidates);
+    if let Some(best) = attempts.candidates.first_mut() {
+        best.plant.noisier = noisier;
+    }
     attempts
+}
+
+/// The transform that would be the best of these if samples had no noise, where another one is.
+fn noisier(candidates: &[Candidate]) -> Option<Noisier> {
+    let best = candidates.first().filter(|best| best.is_full())?;
+    let equal = candidates.iter().filter(|candidate| candidate.standing() == best.standing());
+    let plainest = equal.min_by_key(|candidate| candidate.form())?;
+    let is_best = plainest.unfiltered() == best.unfiltered();
+    (!is_best).then(|| Noisier { phi: plainest.plant.transform(), unfiltered: plainest.unfiltered() })
 }
 
 /// The best transform of a plant, if one is accepted that recovers all states.
@@ -165,6 +180,9 @@ const MOST_PRODUCTS: usize = 100;
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
 
+/// The share of the remaining budget for a transform with less noise than one that is accepted.
+const FOR_LESS_NOISE: u64 = 4;
+
 /// The share of the remaining budget for polynomials with undetermined coefficients.
 const FOR_INVARIANT: u64 = 8;
 
@@ -184,6 +202,8 @@ struct Attempts<'a> {
     known: BTreeSet<Vec<Expr>>,
     /// The polynomials in the states that divide their own rates, once they were looked for.
     invariant: Option<Vec<Expr>>,
+    /// The class of the forms that are tried.
+    class: Class,
 }
 
 impl<'a> Attempts<'a> {
@@ -198,6 +218,7 @@ impl<'a> Attempts<'a> {
             later: Vec::new(),
             known: BTreeSet::new(),
             invariant: None,
+            class: Class::Pebo,
         }
     }
 
@@ -206,17 +227,22 @@ impl<'a> Attempts<'a> {
         if class != Some(Class::Gpebo) {
             self.plain();
         }
+        let share = if self.is_over() { FOR_LESS_NOISE } else { 1 };
+        self.class = Class::Gpebo;
         if class != Some(Class::Pebo) && !self.is_over() {
-            self.generalised();
+            self.problem.arena.budget().share(share, || self.generalised());
         }
         self.rest();
     }
 }
 
 impl Attempts<'_> {
-    /// Tests whether there is nothing better to be expected.
+    /// Tests whether there is nothing better to be expected: a plain cascade that needs the value of an output needs it
+    /// in all of its forms, a generalised one may do without.
     fn is_over(&self) -> bool {
-        !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && !c.copies_an_output())
+        let is_quiet =
+            |c: &Candidate| !c.copies_an_output() && (self.class == Class::Pebo || c.unfiltered().is_empty());
+        !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && is_quiet(c))
     }
 
     /// Tests whether a transform was found.
@@ -439,12 +465,13 @@ impl Attempts<'_> {
             return;
         }
         let Some(measured) = closure::constants::measured(problem) else { return };
-        let search = problem.arena.budget().share(3, || solve(&measured, Some(Class::Pebo)));
+        let candidates = || attempted(&Problem::of(&measured), Some(Class::Pebo)).candidates;
+        let candidates = problem.arena.budget().share(3, candidates);
         let proved = |candidate: &&Candidate| {
             let derivation = &candidate.derivation;
             derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
         };
-        if let Some(candidate) = search.candidates.iter().find(proved) {
+        if let Some(candidate) = candidates.iter().find(proved) {
             let closed = closure::constants::closure(problem, candidate).map(Option::unwrap_or_default);
             let closed = closed.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);

@@ -8,6 +8,8 @@ use super::closure::darboux::invariant;
 use super::closure::observable::observable;
 use super::completion::decision::decided;
 use super::problem::Problem;
+use super::solve;
+use crate::analysis::Class;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::Source;
@@ -202,4 +204,51 @@ fn unobservable_functions_are_left_out() {
     assert_eq!(printed(&plant, &kept), ["S*b - g + I*b", "b", "b*g"]);
     // The rate of S is not affine in these.
     assert_eq!(observable(&problem, &all[1..]).expect("no obstacle"), all[1..]);
+}
+
+/// An accelerometer beside a position: a plain cascade needs the value of the first, a generalised one does not.
+const DRONE: &str = "parameters: {c: 0.35}\nx: [v, wind, bias]\ny: [p, acc]\nu: [a]\nf_x: {v: a - c*(v - wind), \
+                     wind: 0, bias: 0}\nf_y: {p: v}\ng_y: {acc: bias - c*(v - wind)}";
+
+#[test]
+fn a_transform_that_takes_no_samples_is_preferred_to_a_plainer_one() {
+    let plant = plant(DRONE);
+    let arena = &plant.arena;
+    let [v, acc] = ["v", "acc"].map(|name| arena.symbol(name));
+    let best = |class| solve(&plant, class).candidates.swap_remove(0);
+    let chosen = best(None);
+    assert_eq!((chosen.derivation.class, chosen.formulas()[0].as_str()), (Class::Gpebo, "v"));
+    let plain = best(Some(Class::Pebo));
+    assert_eq!(plain.unfiltered(), [(v, acc)]);
+    assert_eq!(chosen.plant.noisier.map(|noisier| noisier.phi), Some(plain.plant.transform()));
+    assert_eq!(plain.plant.noisier, None);
+}
+
+#[test]
+fn a_plain_cascade_is_preferred_where_no_value_of_an_output_is_needed() {
+    let plant = plant("parameters: {c: 0.35}\nx: [v]\ny: [p]\nu: [a]\nf_x: {v: a - c*v}\nf_y: {p: v}");
+    let chosen = solve(&plant, None).candidates.swap_remove(0);
+    assert_eq!((chosen.derivation.class, chosen.plant.noisier), (Class::Pebo, None));
+}
+
+#[test]
+fn states_are_recovered_without_those_that_outputs_do_not_tell_apart() {
+    let rates = "y: [q, r, s]\nu: [v]\nf_y: {q: a - q, r: b + c}";
+    let search =
+        solve(&plant(&format!("x: [a, b, c]\n{rates}\nf_x: {{a: v, b: 0, c: 0}}\ng_y: {{s: a + b + c}}")), None);
+    let (candidate, declaration) = search.declared.expect("a partial observer");
+    assert_eq!(declaration.lines(&candidate.plant), "`x: [a]`, `w: [b, c]`");
+    let written = plant(&format!("x: [a]\nw: [b, c]\n{rates}\nf_x: {{a: v}}"));
+    let written = solve(&written, None).candidates.swap_remove(0);
+    assert!(written.is_full());
+    assert_eq!(written.formulas(), candidate.formulas());
+}
+
+#[test]
+fn a_state_whose_rate_no_transform_covers_is_an_unmeasured_signal() {
+    let lines = "x: [v, d]\ny: [q, s]\nu: [f]\nf_x: {v: f, d: f*sin(d) + log(v)}\nf_y: {q: v, s: d^3}";
+    let (candidate, declaration) = solve(&plant(lines), None).declared.expect("a partial observer");
+    assert_eq!(declaration.lines(&candidate.plant), "`x: [v]`, `w: [d]`");
+    // The rate of d is unknown, and so is that v is positive.
+    assert!(candidate.plant.conditions.is_empty() && candidate.derivation.conditions.is_empty());
 }

@@ -247,7 +247,7 @@ impl Search {
         }
         diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
         diagnostic.help(match &self.declared {
-            Some((_, declaration)) => declaration.help(&plant.arena),
+            Some((candidate, declaration)) => declaration.help(&candidate.plant),
             None => {
                 "measure another signal, assume the signs of what is positive, or write a phi of your own".to_owned()
             }
@@ -287,7 +287,7 @@ impl Search {
 
 /// The sentence that a transform is accepted with a declaration.
 pub fn declared(candidate: &Candidate, declaration: &Declaration) -> String {
-    let lines = declaration.lines(&candidate.plant.arena);
+    let lines = declaration.lines(&candidate.plant);
     format!("with {lines}, phi = [{}] is accepted", candidate.formulas().join(", "))
 }
 

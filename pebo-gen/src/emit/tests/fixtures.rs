@@ -182,13 +182,19 @@ impl Sketch {
             diagnostics: Vec::new(),
             remarks: Remarks::default(),
         };
+        let output = |(y, rate): &(&str, &str)| {
+            let rate = (!rate.is_empty()).then(|| at(rate));
+            Output { symbol: arena.symbol(y), rate, value: None, span }
+        };
         let plant = Plant {
             origin: pebo_design::plant::TransformOrigin::Given,
+            noisier: None,
+            start: BTreeMap::new(),
             class: None,
             cascade_class: None,
             relation_form: None,
             proposal: Proposal::default(),
-            terms: std::collections::BTreeMap::new(),
+            terms: BTreeMap::new(),
             conditions: Vec::new(),
             name: self.name.to_owned(),
             title: Some(self.title.to_owned()),
@@ -199,16 +205,7 @@ impl Sketch {
                 .map(|(name, text)| Parameter { symbol: arena.symbol(name), value: value(text), text: None, span })
                 .collect(),
             x: self.x.iter().map(|(x, rate)| State { symbol: arena.symbol(x), rate: at(rate) }).collect(),
-            y: self
-                .y
-                .iter()
-                .map(|(y, rate)| Output {
-                    symbol: arena.symbol(y),
-                    rate: (!rate.is_empty()).then(|| at(rate)),
-                    value: None,
-                    span,
-                })
-                .collect(),
+            y: self.y.iter().map(output).collect(),
             u: self.u.iter().map(|u| arena.symbol(u)).collect(),
             time: None,
             w: Vec::new(),

@@ -3,6 +3,7 @@
 mod cells;
 mod outputs;
 mod seldom;
+mod start;
 
 use super::{Derivation, Excitation, Outcome, Verdict};
 use crate::model::Model;
