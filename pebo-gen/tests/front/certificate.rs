@@ -55,20 +55,23 @@ fn what_is_said_of_trajectories_is_stated_as_data() {
     let half = stated("model: m\nx: [k]\ny: [r]\nu: [a]\nf_x: {k: 0}\nf_y: {r: 'k*max(0, a)'}\nphi: [1/k]\n");
     let cell = "{\"while\": \"a < 0\", \"positive\": [\"-a\"], \"hidden\": [[\"1\"]]}";
     assert!(half.contains("\"identifiability\": \"excitation\"") && half.contains(cell), "{half}");
-    // At rest one sum alone is seen, and with a constant input all is.
+    // With no current, as at rest, one sum alone is seen, and with another constant input all is.
     let battery =
         stated("model: m\nx: [s, h]\ny: [V]\nu: [I]\nf_x: {s: I, h: -abs(I)*h}\nf_y: {V: s + h}\nphi: [s, h]\n");
-    let rest = "\"rest\": True, \"identified\": [\"z1 + z2\"], \"hidden\": [[\"-1\", \"1\"]]}";
+    let still = "\"zero\": [\"I\"], \"identified\": [\"z1 + z2\"], \"hidden\": [[\"-1\", \"1\"]]}";
     let motion = "\"by itself\": True,\n        \"at rest\": False,";
-    assert!(battery.contains(rest) && battery.contains(motion), "{battery}");
+    assert!(battery.contains(still) && battery.contains(motion), "{battery}");
+    let growth = stated(
+        "model: m\nx: [a, k]\ny: [s]\nassume: [a > 0]\nf_x: {a: (s - 1)*a, k: 0}\nf_y: {s: k - a}\nphi: [a, k]\n",
+    );
+    assert!(growth.contains("\"rest\": True, \"identified\": [\"z2 - z1\"]"), "{growth}");
     let motor = stated(include_str!("../../../models/motor_flux.yaml"));
     assert!(motor.contains("\"zero\": [\"omega\"]") && !motor.contains("undecided\": [{"), "{motor}");
     // Of what is undecided nothing is claimed.
-    let cells = stated(
-        "model: m\nparameters: {k: 2}\nx: [a, b]\ny: [r]\nu: [v, w]\nf_x: {a: -(1 + v^2)*a, b: -(2 + v)*b}\n\
-         f_y: {r: a + b}\nphi: [a, b]\n",
+    let turned = stated(
+        "model: m\nx: [p, s]\ny: [q]\nu: [v, r]\nf_x: {p: 0, s: 0}\nf_y: {q: p*(1 - cos(v)) + s*r}\nphi: [p, s]\n",
     );
-    assert!(cells.contains("\"undecided\": [{\"zero\": [\"v*(v - 1) - 1\"]}]"), "{cells}");
+    assert!(turned.contains("\"undecided\": [{\"zero\": [\"cos(v) - 1\"]}]"), "{turned}");
 }
 
 #[test]

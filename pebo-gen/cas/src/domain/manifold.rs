@@ -16,7 +16,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::certified::System;
-use super::solution::{Partner, Root, Solution, Step, vanishes};
+use super::solution::{Partner, Root, Solution, Step};
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Node, Symbol};
@@ -162,6 +162,39 @@ impl Manifold {
         let facts = Facts::new();
         let solution = Solver { arena, facts: &facts, groups: &self.groups, exact: false }.solve(equations).ok()?;
         solution.open.is_empty().then_some(solution)
+    }
+}
+
+/// Tests whether an expression without symbols is zero.
+fn vanishes(arena: &Arena, constant: Expr) -> bool {
+    arena.is_zero(constant)
+        || arena.is_satisfied(constant)
+        || Field::over(arena, &Facts::new(), &[constant])
+            .and_then(|field| field.fraction(constant))
+            .is_ok_and(|fraction| fraction.is_zero())
+}
+
+impl Step {
+    /// Tests whether the symbol has its value at a point, and a root of it is not zero.
+    fn is_taken(&self, arena: &Arena, point: &Point) -> bool {
+        let distance = arena.sub(arena.of_symbol(self.symbol), self.middle);
+        let is_regular = self.root.is_none() || arena.separated_from_zero(distance, point).is_some();
+        is_regular
+            && arena.exists_at(self.middle, point)
+            && vanishes(arena, arena.substitute(self.equation(arena), point))
+    }
+}
+
+impl Solution {
+    /// The values of the symbols that the steps give, where those of a start satisfy every step and no root vanishes.
+    pub(crate) fn at(&self, arena: &Arena, point: &Point, start: &Point) -> Option<Point> {
+        if self.is_search() {
+            return None;
+        }
+        let values = self.steps.iter().map(|step| Some((step.symbol, *start.get(&step.symbol)?)));
+        let values: Point = values.collect::<Option<_>>()?;
+        let whole: Point = point.iter().chain(&values).map(|(symbol, value)| (*symbol, *value)).collect();
+        self.steps.iter().all(|step| step.is_taken(arena, &whole)).then_some(values)
     }
 }
 

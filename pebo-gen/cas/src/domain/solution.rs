@@ -6,11 +6,10 @@
 use std::collections::BTreeSet;
 
 use super::certified::System;
+use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Symbol};
-use crate::tower::Field;
-use crate::{Facts, Rational};
 
 /// Steps, and the equations that remain.
 #[derive(Clone, Debug, Default)]
@@ -56,15 +55,6 @@ impl Step {
             None => distance,
             Some(root) => arena.sub(arena.power(distance, &i64::from(root.degree).into()), root.radicand),
         }
-    }
-
-    /// Tests whether the symbol has its value at a point, and a root of it is not zero.
-    fn is_taken(&self, arena: &Arena, point: &Point) -> bool {
-        let distance = arena.sub(arena.of_symbol(self.symbol), self.middle);
-        let is_regular = self.root.is_none() || arena.separated_from_zero(distance, point).is_some();
-        is_regular
-            && arena.exists_at(self.middle, point)
-            && vanishes(arena, arena.substitute(self.equation(arena), point))
     }
 
     pub(super) fn needs(&self, arena: &Arena) -> BTreeSet<Symbol> {
@@ -142,17 +132,6 @@ impl Solution {
         self.steps.iter().map(|step| step.symbol).collect()
     }
 
-    /// The values of the symbols that the steps give, where those of a start satisfy every step and no root vanishes.
-    pub(crate) fn at(&self, arena: &Arena, point: &Point, start: &Point) -> Option<Point> {
-        if self.is_search() {
-            return None;
-        }
-        let values = self.steps.iter().map(|step| Some((step.symbol, *start.get(&step.symbol)?)));
-        let values: Point = values.collect::<Option<_>>()?;
-        let whole: Point = point.iter().chain(&values).map(|(symbol, value)| (*symbol, *value)).collect();
-        self.steps.iter().all(|step| step.is_taken(arena, &whole)).then_some(values)
-    }
-
     /// Completes a point that has the values of all other symbols; none if a step has no value there.
     pub(crate) fn complete(&self, arena: &Arena, point: &mut Point, mut choose: impl FnMut() -> Choice) -> Option<()> {
         if !self.system.is_empty() {
@@ -166,13 +145,4 @@ impl Solution {
         }
         Some(())
     }
-}
-
-/// Tests whether an expression without symbols is zero.
-pub(super) fn vanishes(arena: &Arena, constant: Expr) -> bool {
-    arena.is_zero(constant)
-        || arena.is_satisfied(constant)
-        || Field::over(arena, &Facts::new(), &[constant])
-            .and_then(|field| field.fraction(constant))
-            .is_ok_and(|fraction| fraction.is_zero())
 }

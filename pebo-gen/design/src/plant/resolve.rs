@@ -3,7 +3,7 @@
 //! In: a model whose declarations are consistent. Out: the plant, with a transform if the author gave one, or every
 //! name and formula in it that has no meaning.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use crate::model::{self, Comparison, Entry, Model, Spanned};
@@ -15,7 +15,7 @@ use super::formula::{exact, lower};
 use super::own::{Own, letter_of_unknowns};
 use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin, assumed};
 use super::scope::Scope;
-use super::{class, terms, values};
+use super::{class, start, terms, values};
 
 impl Plant {
     /// Resolves the names and numbers of a model; later computations on the plant have the usual budget.
@@ -105,7 +105,7 @@ impl Plant {
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
             relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
             proposal,
-            start: super::start::start(&arena, model, &parameters, &outputs),
+            start: start_of(&arena, model, &parameters, &outputs),
             parameters,
             x: states,
             y: outputs,
@@ -272,6 +272,13 @@ fn compared(arena: &Arena, scope: &Scope, comparison: &Comparison) -> Result<Vec
             Ok(Assumption { expr: difference, relation, span: comparison.span })
         })
         .collect()
+}
+
+/// The values at the start of the simulation.
+fn start_of(arena: &Arena, model: &Model, parameters: &[Parameter], outputs: &[Output]) -> BTreeMap<Symbol, Expr> {
+    let parameters: Vec<_> = parameters.iter().filter_map(|own| Some((own.symbol, own.value.clone()?))).collect();
+    let outputs: Vec<_> = outputs.iter().filter_map(|own| Some((own.symbol, own.value?.expr))).collect();
+    start::start(arena, model, &parameters, &outputs)
 }
 
 /// Every output that the transform uses needs a rate.

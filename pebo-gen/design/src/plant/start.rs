@@ -6,31 +6,33 @@
 use crate::model::Model;
 use pebo_cas::graph::enclosure::Point;
 use pebo_cas::number::interval::Precision;
-use pebo_cas::{Arena, Expr, Rational};
+use pebo_cas::{Arena, Expr, Rational, Symbol};
 
 use super::formula::lower;
-use super::plant::{Output, Parameter};
 use super::scope::Scope;
 
-/// The values at the start.
-pub(super) fn start(arena: &Arena, model: &Model, parameters: &[Parameter], outputs: &[Output]) -> Point {
+/// The values at the start, with those of the parameters and the formulas of the outputs' values.
+pub(super) fn start(
+    arena: &Arena,
+    model: &Model,
+    parameters: &[(Symbol, Rational)],
+    outputs: &[(Symbol, Expr)],
+) -> Point {
     let mut start = Point::new();
     let Some(simulation) = &model.simulation else { return start };
     // An arena of its own: results are not to be printed with the decimals of a simulation.
     let (own, mut scope) = (Arena::new(), Scope::new());
-    let given = parameters.iter().filter_map(|parameter| Some((parameter.symbol, parameter.value.clone()?)));
-    for (symbol, value) in given.clone() {
-        scope.define(arena.name(symbol), own.number(value));
+    for (symbol, value) in parameters {
+        scope.define(arena.name(*symbol), own.number(value.clone()));
     }
     for entry in &simulation.initial {
         let value = lower(&own, &scope, &entry.value).ok().and_then(|formula| rational(&own, formula));
         start.extend(value.map(|value| (arena.symbol(&entry.name.value), arena.number(value))));
     }
-    let parameters: Point = given.map(|(symbol, value)| (symbol, arena.number(value))).collect();
-    for output in outputs {
-        let known = |value: Expr| arena.substitute(arena.substitute(value, &start), &parameters);
-        let value = output.value.and_then(|value| rational(arena, known(value.expr)));
-        start.extend(value.map(|value| (output.symbol, arena.number(value))));
+    let parameters: Point = parameters.iter().map(|(symbol, value)| (*symbol, arena.number(value.clone()))).collect();
+    for (output, value) in outputs {
+        let value = rational(arena, arena.substitute(arena.substitute(*value, &start), &parameters));
+        start.extend(value.map(|value| (*output, arena.number(value))));
     }
     start
 }
