@@ -103,11 +103,11 @@ impl TrajectoryProblem<'_> {
                         // An equation for the rate of an input, whose own rate is another free function.
                         return Err(Obstacle::Unsolved(arena.print(zero)));
                     }
-                    if !rates.is_empty() {
-                        open.push((there, rates));
-                    } else {
+                    if rates.is_empty() {
                         let moves = signals.iter().any(|signal| moves(arena.of_symbol(*signal)).is_some());
                         found.push(self.observe(there, held, moves)?);
+                    } else {
+                        open.push((there, rates));
                     }
                 }
             }

@@ -61,7 +61,11 @@ impl<'a> List<'a> {
                 let observed = first.observed.clone();
                 self.add(&Family { set: whole, observed, moves: first.moves });
             }
-            _ => families.iter().for_each(|family| self.add(family)),
+            _ => {
+                for family in &families {
+                    self.add(family);
+                }
+            }
         }
         // Zeros within one that identifies all unknowns were not worked out.
         Ok(families.iter().all(|family| !family.observed.is_full()))

@@ -45,12 +45,12 @@ pub(super) fn of(
     // The shortest rows of full rank are those of the fewest moving signals.
     let still = (by_itself == Some(true)).then(|| problem.solve(domain, &problem.held(&Still::Plant)));
     let free;
-    let observed = match still.iter().chain([&constant]).flatten().find(|observed| observed.is_full()) {
-        Some(observed) => Some(observed),
-        None => {
-            free = problem.solve(domain, &BTreeSet::new());
-            free.as_ref().ok()
-        }
+    let shortest = still.iter().chain([&constant]).flatten().find(|observed| observed.is_full());
+    let observed = if shortest.is_some() {
+        shortest
+    } else {
+        free = problem.solve(domain, &BTreeSet::new());
+        free.as_ref().ok()
     };
     let special = observed.and_then(|observed| {
         let is_short = problem.check_size(&observed.stack).is_ok();
@@ -75,8 +75,10 @@ pub(super) fn of(
 /// A domain on which these are not zero, and these are positive.
 pub(super) fn assuming(domain: &Domain, nonzero: &[Expr], positive: &[Expr]) -> Domain {
     let mut domain = domain.clone();
-    nonzero.iter().for_each(|expr| domain.facts.assume(*expr, Relation::NonZero));
-    positive.iter().for_each(|expr| domain.facts.assume(*expr, Relation::Positive));
+    let nonzero = nonzero.iter().map(|expr| (*expr, Relation::NonZero));
+    for (expr, relation) in nonzero.chain(positive.iter().map(|expr| (*expr, Relation::Positive))) {
+        domain.facts.assume(expr, relation);
+    }
     domain
 }
 
@@ -104,7 +106,9 @@ impl TrajectoryProblem<'_> {
         }
         for zero in zero_set.constants.into_iter().filter(|zero| !conditions.contains(zero)) {
             let families = self.at_zero(&steady, zero, &held).unwrap_or_default();
-            families.iter().for_each(|family| list.add(family));
+            for family in &families {
+                list.add(family);
+            }
         }
     }
 
