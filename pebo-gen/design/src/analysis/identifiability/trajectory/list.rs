@@ -46,15 +46,16 @@ impl<'a> List<'a> {
         held: &BTreeSet<Symbol>,
     ) -> Result<bool, Obstacle> {
         let mut families = self.problem.at_zero(set, zero, held)?;
+        // Components that hide the same are one set.
+        let is_one = families.len() > 1 && families.iter().all(|family| family.hides_as(&families[0]));
         let is_stated = match set.condition.still {
             Still::Nothing => self.problem.is_of_inputs(zero),
             Still::Inputs(_) => false,
             Still::Plant => true,
         };
         families.retain(|family| family.moves || is_stated);
-        match families.as_slice() {
-            // Components that hide the same are one set.
-            [first, others @ ..] if !others.is_empty() && others.iter().all(|other| first.hides_as(other)) => {
+        match families.first() {
+            Some(first) if is_one => {
                 let mut whole = set.clone();
                 whole.cell.domain = self.problem.also(&set.cell.domain, &[zero]);
                 whole.condition.zeros.push(zero);
