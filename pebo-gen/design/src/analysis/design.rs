@@ -315,7 +315,8 @@ pub struct Trajectories {
     /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
     /// None if undecided.
     pub by_itself: Option<bool>,
-    /// True if nothing has to move: there are equilibria, and the rank is full at almost all of them.
+    /// True if nothing has to move: there are equilibria outside the listed trajectories, and the rank is full at almost
+    /// all of these.
     pub at_rest: bool,
     /// Trajectories on which the rank is not full.
     pub blind: Vec<BlindTrajectory>,

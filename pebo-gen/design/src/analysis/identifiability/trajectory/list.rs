@@ -91,18 +91,6 @@ impl<'a> List<'a> {
         self.state(BlindTrajectory::undecided(condition), set.cell.domain.clone());
     }
 
-    /// A statement that holds throughout a family and hides as many directions, or is undecided.
-    pub(super) fn covering(&self, family: &Family) -> Option<&BlindTrajectory> {
-        let Set { cell, condition } = &family.set;
-        let holds = |blind: &&BlindTrajectory| {
-            let says_as_much = !blind.is_decided() || blind.hidden.len() == family.observed.hidden.len();
-            says_as_much
-                && !family.observed.is_full()
-                && blind.condition.holds_on(&self.problem.plant.arena, &condition.still, &cell.domain)
-        };
-        self.all().find(holds)
-    }
-
     /// Tests whether what is hidden on a family is stated: of all of it, or of the cells into which others divide it.
     pub(super) fn covers(&self, family: &Family) -> bool {
         let Set { cell, condition } = &family.set;

@@ -38,7 +38,7 @@ pub(in crate::analysis::identifiability) fn add(
 }
 
 impl TrajectoryProblem<'_> {
-    /// Adds the equilibria at which unknowns are hidden. True if there are others, and these are almost all.
+    /// Adds the equilibria at which unknowns are hidden. True if there are others, at almost all of which none is.
     fn at_rest(&self, list: &mut List<'_>) -> bool {
         let (whole, held) = (self.whole(Still::Plant), self.held(&Still::Plant));
         let Ok(families) = self.equilibria() else {
@@ -58,11 +58,8 @@ impl TrajectoryProblem<'_> {
             }
             return false;
         }
-        // Exceptions need something that they are exceptions of.
-        let mut identified = families.iter().any(|family| family.observed.is_full());
         for family in &families {
             if !family.observed.is_full() {
-                identified &= list.covering(family).is_some();
                 list.add(family);
                 continue;
             }
@@ -78,6 +75,6 @@ impl TrajectoryProblem<'_> {
                 }
             }
         }
-        identified
+        families.iter().any(|family| family.observed.is_full())
     }
 }
