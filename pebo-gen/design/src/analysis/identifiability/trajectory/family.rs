@@ -19,7 +19,7 @@ use super::problem::{Observation, TrajectoryProblem};
 /// A set of trajectories: where they remain, and in words.
 #[derive(Clone)]
 pub(in crate::analysis::identifiability) struct Set {
-    pub(in crate::analysis::identifiability) cell: Cell,
+    pub(in crate::analysis::identifiability) domain: Domain,
     pub(in crate::analysis::identifiability) condition: TrajectoryCondition,
 }
 
@@ -42,7 +42,7 @@ impl TrajectoryProblem<'_> {
     /// All trajectories of the domain on which these do not move.
     pub(in crate::analysis::identifiability) fn whole(&self, still: Still) -> Set {
         let condition = TrajectoryCondition { still, ..TrajectoryCondition::default() };
-        Set { cell: Cell { domain: self.domain.clone(), sides: Vec::new() }, condition }
+        Set { domain: self.domain.clone(), condition }
     }
 
     /// The equilibria.
@@ -87,7 +87,7 @@ impl TrajectoryProblem<'_> {
         for _ in 0..=signals.len() + plant.u.len() {
             for (set, equations) in std::mem::take(&mut open) {
                 for there in self.subsets(&set, &equations, named)? {
-                    let domain = &there.cell.domain;
+                    let domain = &there.domain;
                     let flow = Flow::along(plant, domain, cascade, held)?;
                     let moves = |expr: Expr| {
                         let rate = domain.analytic(arena, &[flow.rate(arena, expr)])[0];
@@ -160,7 +160,7 @@ impl TrajectoryProblem<'_> {
 
     /// The observations on a set.
     fn observe(&self, set: Set, held: &BTreeSet<Symbol>, moves: bool) -> Result<Family, Obstacle> {
-        let observed = self.solve(&set.cell.domain, held)?;
+        let observed = self.solve(&set.domain, held)?;
         Ok(Family { set, observed, moves })
     }
 
@@ -173,7 +173,7 @@ impl TrajectoryProblem<'_> {
         named: impl Fn(&[Expr], Vec<Expr>) -> Vec<Expr>,
     ) -> Result<Vec<Set>, Obstacle> {
         let arena = &self.plant.arena;
-        let (whole, order) = (&set.cell.domain, self.plant.elimination_order());
+        let (whole, order) = (&set.domain, self.plant.elimination_order());
         let rows = [&self.regression.phi_1, &self.regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(self.cascade.lambda.iter().flatten().flatten()).chain(equations);
         let formulas: Vec<Expr> = formulas.copied().collect();
@@ -182,19 +182,16 @@ impl TrajectoryProblem<'_> {
         let reduced: Vec<Vec<Expr>> = components.iter().map(|there| there.domain.manifold.reduced(arena)).collect();
         let hidden = self.plant.hidden();
         let mut found = Vec::new();
-        for (component, own) in components.into_iter().zip(&reduced) {
-            let raw = [set.cell.sides.as_slice(), &component.sides].concat();
-            let mut cell = Cell { sides: raw, ..component };
+        for (cell, own) in components.into_iter().zip(&reduced) {
             let is_own = |equation: &&Expr| !reduced.iter().all(|other| other.contains(*equation));
             let special: Vec<Expr> = own.iter().filter(is_own).copied().collect();
-            let sides = cell.distinct_sides(arena, self.domain);
+            let sides = cell.distinct_sides(arena, whole);
             // Or the equations by the branches of the cell are all that hold there.
             let within = Domain { manifold: whole.manifold.clone(), ..cell.domain.clone() };
             let branches = within.without_equations().analytic(arena, equations);
             let branches = Manifold::new(arena, &within.facts, branches, order.clone()).reduced(arena);
             let others: Vec<Expr> = special.iter().filter(|equation| !branches.contains(equation)).copied().collect();
-            let all_sides =
-                Cell { domain: within.clone(), sides: cell.sides.clone() }.distinct_sides(arena, self.domain);
+            let all_sides = Cell { domain: within.clone(), sides: cell.sides }.distinct_sides(arena, whole);
             let is_shorter = others.len() + all_sides.len() < special.len() + sides.len();
             let (sides, special) = if is_shorter { (all_sides, others) } else { (sides, special) };
             let of_signals: Vec<Expr> =
@@ -207,15 +204,19 @@ impl TrajectoryProblem<'_> {
             let determined_by: Vec<Expr> =
                 own.iter().copied().chain(sides.iter().map(|(divider, _)| *divider)).collect();
             let has_point = |domain: &Domain| domain.points(arena, &determined_by).next().is_some();
-            if !has_point(&cell.domain) {
+            let mut domain = cell.domain;
+            if !has_point(&domain) {
                 // It may be one of other values of the parameters.
-                cell.domain.fixed.clear();
-                if !has_point(&cell.domain) {
+                domain.fixed.clear();
+                if !has_point(&domain) {
                     return Err(Obstacle::NoPoint);
                 }
             }
-            let condition = TrajectoryCondition { sides, still: set.condition.still.clone(), zeros };
-            found.push(Set { cell, condition });
+            // The equations may hold by the branches of the sides so far.
+            let mut all = set.condition.sides.clone();
+            all.extend(sides.into_iter().filter(|side| !set.condition.sides.contains(side)));
+            let condition = TrajectoryCondition { sides: all, still: set.condition.still.clone(), zeros };
+            found.push(Set { domain, condition });
         }
         Ok(found)
     }

@@ -32,8 +32,8 @@ impl<'a> List<'a> {
     /// Adds a family that hides unknowns, unless a statement holds it.
     pub(super) fn add(&mut self, family: &Family) {
         if !family.observed.is_full() && !self.covers(family) {
-            let Set { cell, condition } = &family.set;
-            self.state(self.problem.blind(condition.clone(), &family.observed), cell.domain.clone());
+            let Set { domain, condition } = &family.set;
+            self.state(self.problem.blind(condition.clone(), &family.observed), domain.clone());
         }
     }
 
@@ -57,7 +57,7 @@ impl<'a> List<'a> {
         match families.first() {
             Some(first) if is_one => {
                 let mut whole = set.clone();
-                whole.cell.domain = self.problem.also(&set.cell.domain, &[zero]);
+                whole.domain = self.problem.also(&set.domain, &[zero]);
                 whole.condition.zeros.push(zero);
                 let observed = first.observed.clone();
                 self.add(&Family { set: whole, observed, moves: first.moves });
@@ -88,18 +88,18 @@ impl<'a> List<'a> {
         if self.known.iter().any(|blind| !blind.is_decided() && blind.condition.zeros == condition.zeros) {
             return;
         }
-        self.state(BlindTrajectory::undecided(condition), set.cell.domain.clone());
+        self.state(BlindTrajectory::undecided(condition), set.domain.clone());
     }
 
     /// Tests whether what is hidden on a family is stated: of all of it, or of the cells into which others divide it.
     pub(super) fn covers(&self, family: &Family) -> bool {
-        let Set { cell, condition } = &family.set;
+        let Set { domain, condition } = &family.set;
         let is_same = |blind: &&BlindTrajectory| blind.hidden.len() == family.observed.hidden.len();
         let all: Vec<&TrajectoryCondition> = self.all().filter(is_same).map(|blind| &blind.condition).collect();
         let mut dividers: Vec<Expr> = all.iter().flat_map(|other| &other.sides).map(|(divider, _)| *divider).collect();
         dividers.sort_unstable();
         dividers.dedup();
-        !family.observed.is_full() && self.are_covering(&all, &dividers, &condition.still, &cell.domain)
+        !family.observed.is_full() && self.are_covering(&all, &dividers, &condition.still, domain)
     }
 
     /// Tests whether one of the conditions holds on each of the cells of a domain.

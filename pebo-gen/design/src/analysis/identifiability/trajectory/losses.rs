@@ -127,14 +127,14 @@ impl TrajectoryProblem<'_> {
         // At values of the parameters that the formula allows, not at those of the file, where it need not vanish.
         let mut free = self.whole(Still::Nothing);
         for parameter in self.plant.arena.symbols_of(&[zero]) {
-            free.cell.domain.fixed.remove(&parameter);
+            free.domain.fixed.remove(&parameter);
         }
         let families = self.at_zero(&free, zero, &BTreeSet::new())?;
         if families.iter().any(|family| !family.observed.is_full()) {
             return Ok(None);
         }
         let is_further = |family: &Family| {
-            let zero_set = self.zero_set(&family.set.cell.domain, &family.observed);
+            let zero_set = self.zero_set(&family.set.domain, &family.observed);
             zero_set.map_or(true, |zero_set| !zero_set.all || zero_set.joint || !zero_set.constants.is_empty())
         };
         Ok(Some(families.iter().any(is_further)))

@@ -54,7 +54,7 @@ impl TrajectoryProblem<'_> {
             // One statement for all of them, of which a listed one may hold.
             if let Some(family) = families.iter().find(|family| !list.covers(family)) {
                 let set = if families.len() == 1 { &family.set } else { &whole };
-                list.state(self.blind(set.condition.clone(), &family.observed), set.cell.domain.clone());
+                list.state(self.blind(set.condition.clone(), &family.observed), set.domain.clone());
             }
             return false;
         }
@@ -63,7 +63,7 @@ impl TrajectoryProblem<'_> {
                 list.add(family);
                 continue;
             }
-            let Ok(zero_set) = self.zero_set(&family.set.cell.domain, &family.observed) else {
+            let Ok(zero_set) = self.zero_set(&family.set.domain, &family.observed) else {
                 list.is_complete = false;
                 continue;
             };

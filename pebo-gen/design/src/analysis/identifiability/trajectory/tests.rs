@@ -267,3 +267,13 @@ fn equilibria_are_those_of_the_plant() {
         "{lines:?}"
     );
 }
+
+/// Of `|q|*b = v` each side has its own zeros, at which q has the sign of the side, and says so.
+#[test]
+fn equilibria_of_a_cell_are_listed_with_its_sides() {
+    let plant = "x: [a, b]\ny: [q]\nu: [v, r]\nassume: [v > 0]\nphi: [a, b]\n\
+                 f_x: {a: -a, b: \"a + abs(q)*b - v\"}\nf_y: {q: v*q*a + r*b + v^2 + 1}";
+    let lines = of(plant);
+    let at_rest: Vec<&String> = lines.iter().filter(|line| line.contains("the plant rests and")).collect();
+    assert!(!at_rest.is_empty() && at_rest.iter().all(|line| line.contains("`q < 0`")), "{lines:?}");
+}
