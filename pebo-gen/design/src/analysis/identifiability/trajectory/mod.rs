@@ -2,12 +2,13 @@
 //! they are hidden.
 //!
 //! In: a regression whose rows are of full rank over time on almost every trajectory. Out: the same with all inputs
-//! constant; and simple trajectories on which they are not: inputs that are constant, that are equal, or
-//! at a value at which an entry vanishes.
+//! constant; and the trajectories on which they are not: while inputs are constant, or while the determinant of the rows
+//! or one of their entries is zero at all times.
 //!
 //! The problem is the same as for all trajectories: the rank of the rows with their derivatives. A point proves full
-//! rank; otherwise exact algebra gives the directions that no derivative observes. Undecided trajectories are not
-//! reported; that there are no others is reported only if each of them provably ends at once.
+//! rank; otherwise exact algebra gives the directions that no derivative observes. A zero at which trajectories may
+//! remain is listed as undecided where nothing was proved; that there are no others is reported only if all were worked
+//! out.
 
 mod coinciding;
 mod family;
