@@ -4,6 +4,7 @@ A cell is where all arguments of `abs`, `sign`, `max`, `min` and `sat` keep thei
 """
 
 import re
+from decimal import Context, Decimal
 from fractions import Fraction
 from math import isqrt
 
@@ -75,8 +76,18 @@ def root(a):
     return number(Fraction(isqrt(inside.numerator // inside.denominator), 10**200))
 
 
+def logarithm(a):
+    """Of a positive start, to 200 digits: zero is exact."""
+    if a.terms[0] <= 0:
+        raise NoValue
+    digits = Context(prec=200)
+    start = digits.ln(digits.divide(Decimal(a.terms[0].numerator), Decimal(a.terms[0].denominator)))
+    slopes = (a.rate() / a).terms
+    return Series([Fraction(start)] + [slope / (k + 1) for k, slope in enumerate(slopes)])
+
+
 FUNCTIONS = {
-    "sqrt": root, "number": number, "max": larger, "min": smaller, "sign": lambda a: number(a.sign()),
+    "sqrt": root, "log": logarithm, "number": number, "max": larger, "min": smaller, "sign": lambda a: number(a.sign()),
     "abs": lambda a: a if a.positive() else -a, "sat": lambda a: larger(number(-1), smaller(a, number(1))),
 }
 COMPILED = {}

@@ -6,26 +6,23 @@
 use std::collections::BTreeSet;
 
 use crate::plant::Plant;
-use crate::source::Diagnostic;
-use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr};
+use pebo_cas::Expr;
 
 use super::divided::Formulas;
+use super::problem::ObservabilityProblem;
+use super::regimes;
 use crate::analysis::design::{Claim, Excitation, Identifiability, Verdict};
 
 /// The common decision; none where the components are not found, or differ.
-pub(super) fn on_components(
-    plant: &Plant,
-    domain: &Domain,
-    formulas: &Formulas,
-    decide: impl Fn(&Domain, &mut Vec<Diagnostic>) -> Result<Claim<Identifiability>, Obstacle>,
-) -> Option<Claim<Identifiability>> {
-    let components = domain.components(&plant.arena, &[], &formulas.identities, &plant.elimination_order()).ok()?;
+pub(super) fn on_components(problem: &ObservabilityProblem<'_>, formulas: &Formulas) -> Option<Claim<Identifiability>> {
+    let plant = problem.plant;
+    let components =
+        problem.domain.components(&plant.arena, &[], &formulas.identities, &plant.elimination_order()).ok()?;
     let equations: Vec<Vec<Expr>> =
         components.iter().map(|there| there.domain.manifold.reduced(&plant.arena)).collect();
     let mut claims = Vec::new();
     for there in &components {
-        claims.push(decide(&there.domain, &mut Vec::new()).ok()?);
+        claims.push(regimes::decide(&problem.on(&there.domain), formulas, &mut Vec::new()).ok()?);
     }
     let singular = |claim: &Claim<Identifiability>| claim.result.as_ref().map(|result| result.singular_where.clone());
     if claims.iter().any(|claim| singular(claim) != singular(&claims[0])) {

@@ -12,31 +12,17 @@ use pebo_cas::domain::cells::{Cell, walls};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
+use super::analytic::{AnalyticDecision, where_analytic};
 use super::crossing::{CellRows, all_identified, driven};
 use super::flow::varies;
 use super::joined::Joined;
+use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
 use super::special;
-use super::trajectory::{List, SHARE_OF_REMARKS, TrajectoryProblem, assuming, identifiable};
+use super::trajectory::{List, assuming};
 use crate::analysis::design::{
-    BlindTrajectory, Cascade, Claim, Excitation, Identifiability, Regression, Still, TrajectoryCondition, Verdict,
+    BlindTrajectory, Claim, Excitation, Identifiability, Still, TrajectoryCondition, Verdict,
 };
 use crate::analysis::left_inverse::checking::at_phi;
-
-/// An answer where all formulas are analytic.
-pub(super) struct AnalyticDecision {
-    /// The verdict.
-    pub(super) claim: Claim<Identifiability>,
-    /// The directions of the unknowns that are never observable.
-    pub(super) hidden: Vec<Vec<Expr>>,
-    /// The rows of the regressor, with the derivatives that were looked at.
-    pub(super) rows: Vec<Vec<Expr>>,
-}
-
-impl From<Claim<Identifiability>> for AnalyticDecision {
-    fn from(claim: Claim<Identifiability>) -> Self {
-        Self { claim, hidden: Vec::new(), rows: Vec::new() }
-    }
-}
 
 /// The formulas that may be non-smooth.
 pub(super) struct Formulas {
@@ -65,14 +51,13 @@ pub(super) fn kind(claim: &Claim<Identifiability>) -> Option<Excitation> {
 
 /// The decision on a domain from those on its cells.
 pub(super) fn on_cells(
-    plant: &Plant,
-    domain: &Domain,
-    (cascade, regression): (&Cascade, &Regression),
+    problem: &ObservabilityProblem<'_>,
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: &impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
+    let &ObservabilityProblem { plant, domain, cascade, regression, .. } = problem;
     let arena = &plant.arena;
+    let on = |domain: &Domain, found: &mut Vec<Diagnostic>| where_analytic(&problem.on(domain), found);
     let varies = |expr: Expr| varies(plant, expr);
     let mut reported = Vec::new();
     let whole = on(domain, &mut reported);
@@ -95,30 +80,27 @@ pub(super) fn on_cells(
         found.extend(reported);
         return Ok(whole.claim);
     }
+    // A fundamental matrix varies with time: rows of two instants do not compare.
+    let entries: Vec<Expr> = regression.phi_1.iter().chain(&regression.primitive_1).flatten().copied().collect();
+    let by_psi = !arena.symbols_of(&entries).is_disjoint(&plant.psi.iter().flatten().copied().collect());
     let mut joined = Joined::new();
     let mut observed = Vec::new();
-    let symbols = if regression.is_linear(plant) { &plant.z } else { &regression.eta_symbols };
     for cell in &cells {
         let mut reported = Vec::new();
-        let AnalyticDecision { claim, hidden, rows } = on(&cell.domain, &mut reported);
+        let AnalyticDecision { claim, observed: rows } = on(&cell.domain, &mut reported);
         let Some(result) = &claim.result else {
             found.extend(reported);
             return Ok(claim);
         };
         let sides = || cell.distinct_sides(arena, domain);
         joined.add(result, sides);
-        if result.kind == Excitation::Never {
-            joined.blind.push(BlindTrajectory {
-                condition: TrajectoryCondition { sides: sides(), ..TrajectoryCondition::default() },
-                identifiable: identifiable(arena, symbols, &hidden),
-                hidden: hidden.clone(),
-            });
+        if let Some(rows) = &rows {
+            let condition = TrajectoryCondition { sides: sides(), ..TrajectoryCondition::default() };
+            joined.blind.push(problem.blind(condition, rows));
         }
-        observed.push(CellRows { cell, rows, hidden });
+        let Observation { stack, hidden, .. } = rows.unwrap_or_default();
+        observed.push(CellRows { cell, rows: if by_psi { Vec::new() } else { stack }, hidden });
     }
-    // A fundamental matrix varies with time: rows of two instants do not compare.
-    let entries: Vec<Expr> = observed.iter().flat_map(|cell| cell.rows.concat()).collect();
-    let by_psi = arena.symbols_of(&entries).iter().any(|s| plant.psi.iter().flatten().any(|psi| psi == s));
     // At the given values of the parameters some cells may have no points.
     let given: Vec<&CellRows<'_>> = observed.iter().filter(|cell| cell.cell.domain.fixed == domain.fixed).collect();
     let identify = |cells: &[&CellRows<'_>]| -> Result<bool, Obstacle> {
@@ -127,8 +109,8 @@ pub(super) fn on_cells(
     };
     if joined.blind.len() == cells.len() {
         // A direction that no cell observes is a statement on the whole domain only if it is the same in all.
-        let one = |direction: &Vec<Expr>| direction.iter().all(|entry| !varies(*entry));
-        if kind(&whole.claim) == Some(Excitation::Never) && whole.hidden.first().is_some_and(one) {
+        let is_one = |whole: &Observation| whole.hidden[0].iter().all(|entry| !varies(*entry));
+        if whole.observed.as_ref().is_some_and(is_one) {
             found.extend(reported);
             return Ok(whole.claim);
         }
@@ -150,7 +132,7 @@ pub(super) fn on_cells(
     joined.add_cells(plant, cells.len());
     joined.join_neighbours();
     let there = assuming(domain, &joined.constants, &[]);
-    for wall in on_walls(plant, &there, (cascade, regression), &cells, (joined.by_itself, &joined.blind)) {
+    for wall in on_walls(&problem.on(&there), &cells, (joined.by_itself, &joined.blind)) {
         if joined.blind.iter().all(|other| other.condition(plant) != wall.condition(plant)) {
             joined.blind.push(wall);
         }
@@ -167,20 +149,18 @@ fn are_of_inputs(plant: &Plant, cells: &[Cell]) -> bool {
 /// The trajectories that stay between two cells, on which not all unknowns are identifiable: undecided where no rule
 /// decides it.
 fn on_walls(
-    plant: &Plant,
-    domain: &Domain,
-    (cascade, regression): (&Cascade, &Regression),
+    problem: &ObservabilityProblem<'_>,
     cells: &[Cell],
     (by_itself, listed): (Option<bool>, &[BlindTrajectory]),
 ) -> Vec<BlindTrajectory> {
-    let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
+    let &ObservabilityProblem { plant, cascade, regression, .. } = problem;
     let inputs: BTreeSet<Symbol> = plant.commanded().collect();
     let lambda = cascade.lambda.iter().flatten().flatten();
     let rows: Vec<Expr> =
         [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten().chain(lambda).copied().collect();
     let holds_inputs = !plant.arena.symbols_of(&rows).is_disjoint(&inputs);
     let (free, steady) = (problem.whole(Still::Nothing), problem.whole(problem.inputs()));
-    let mut list = List::new(&problem, listed);
+    let mut list = List::new(problem, listed);
     plant.arena.budget().share(SHARE_OF_REMARKS, || {
         for wall in walls(cells) {
             // A signal that an input drives is constant on its wall, by the input, which the rows must not hold then.

@@ -3,7 +3,7 @@
 //! In: the decision on a domain. Out: the decision for all values of the parameters that the assumptions leave: where
 //! those of some signs have another answer, the signs of the file are conditions.
 
-use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, Regression, Verdict};
+use crate::analysis::design::{Claim, Excitation, Identifiability, Verdict};
 use crate::analysis::left_inverse::checking::at_phi;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
@@ -11,23 +11,20 @@ use pebo_cas::Domain;
 use pebo_cas::domain::cells::{Cell, walls};
 use pebo_cas::tower::Obstacle;
 
-use super::divided::{AnalyticDecision, Formulas, kind, on_cells};
+use super::divided::{Formulas, kind, on_cells};
 use super::flow::varies;
 use super::joined::Joined;
+use super::problem::ObservabilityProblem;
 use super::special::{SpecialValues, on_boundary};
 
 /// Answers on the whole domain; an obstacle where that is open.
 pub(super) fn decide(
-    plant: &Plant,
-    domain: &Domain,
-    (cascade, regression): (&Cascade, &Regression),
+    problem: &ObservabilityProblem<'_>,
     formulas: &Formulas,
     found: &mut Vec<Diagnostic>,
-    on: impl Fn(&Domain, &mut Vec<Diagnostic>) -> AnalyticDecision,
 ) -> Result<Claim<Identifiability>, Obstacle> {
-    let on_cells = |domain: &Domain, found: &mut Vec<Diagnostic>| {
-        on_cells(plant, domain, (cascade, regression), formulas, found, &on)
-    };
+    let &ObservabilityProblem { plant, domain, .. } = problem;
+    let on_cells = |domain: &Domain, found: &mut Vec<Diagnostic>| on_cells(&problem.on(domain), formulas, found);
     let regimes = regimes(plant, domain, formulas)?;
     if let [_] = regimes.as_slice() {
         return on_cells(domain, found);

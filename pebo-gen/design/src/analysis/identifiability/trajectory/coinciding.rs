@@ -6,10 +6,10 @@
 
 use std::collections::BTreeSet;
 
-use super::problem::TrajectoryProblem;
+use crate::analysis::identifiability::problem::ObservabilityProblem;
 use pebo_cas::{Expr, Node, Relation, Symbol};
 
-impl TrajectoryProblem<'_> {
+impl ObservabilityProblem<'_> {
     /// Tests whether values of the parameters may make functions in the rows constant or equal.
     pub(super) fn may_coincide(&self, stack: &[Vec<Expr>]) -> bool {
         let arena = &self.plant.arena;

@@ -14,7 +14,7 @@ use pebo_cas::forms::tidy::shortest;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Symbol};
 
-use super::problem::{Observation, TrajectoryProblem};
+use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation};
 
 /// A set of trajectories: where they remain, and in words.
 #[derive(Clone)]
@@ -38,7 +38,7 @@ impl Family {
     }
 }
 
-impl TrajectoryProblem<'_> {
+impl ObservabilityProblem<'_> {
     /// All trajectories of the domain on which these do not move.
     pub(in crate::analysis::identifiability) fn whole(&self, still: Still) -> Set {
         let condition = TrajectoryCondition { still, ..TrajectoryCondition::default() };
@@ -160,7 +160,7 @@ impl TrajectoryProblem<'_> {
 
     /// The observations on a set.
     fn observe(&self, set: Set, held: &BTreeSet<Symbol>, moves: bool) -> Result<Family, Obstacle> {
-        let observed = self.solve(&set.domain, held)?;
+        let observed = self.solve_along(&set.domain, held)?;
         Ok(Family { set, observed, moves })
     }
 

@@ -9,11 +9,11 @@ use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::family::{Family, Set};
-use super::problem::TrajectoryProblem;
+use crate::analysis::identifiability::problem::ObservabilityProblem;
 
 /// Statements on trajectories.
 pub(in crate::analysis::identifiability) struct List<'a> {
-    problem: &'a TrajectoryProblem<'a>,
+    problem: &'a ObservabilityProblem<'a>,
     /// Statements on other domains, which hold here too.
     known: &'a [BlindTrajectory],
     found: Vec<(BlindTrajectory, Domain)>,
@@ -23,7 +23,7 @@ pub(in crate::analysis::identifiability) struct List<'a> {
 
 impl<'a> List<'a> {
     pub(in crate::analysis::identifiability) fn new(
-        problem: &'a TrajectoryProblem<'a>,
+        problem: &'a ObservabilityProblem<'a>,
         known: &'a [BlindTrajectory],
     ) -> Self {
         Self { problem, known, found: Vec::new(), is_complete: true }

@@ -10,9 +10,9 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::family::Family;
-use super::problem::{Observation, TrajectoryProblem};
+use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation};
 
-impl TrajectoryProblem<'_> {
+impl ObservabilityProblem<'_> {
     pub(super) fn parameters(&self) -> BTreeSet<Symbol> {
         self.plant.parameters.iter().map(|parameter| parameter.symbol).collect()
     }
@@ -57,7 +57,7 @@ impl TrajectoryProblem<'_> {
     /// Tests whether an unknown moves no output while a formula is zero: it divides all factors of the unknown.
     pub(super) fn hides_an_unknown(&self, zero: Expr) -> bool {
         let rows = self.rows();
-        (0..self.unknowns).any(|column| rows.iter().all(|row| self.divides(zero, row[column])))
+        (0..self.unknowns()).any(|column| rows.iter().all(|row| self.divides(zero, row[column])))
     }
 
     /// Tests whether trajectories may remain at a zero while these do not move: it is one of a single signal, or the

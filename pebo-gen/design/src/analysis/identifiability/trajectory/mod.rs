@@ -14,7 +14,6 @@ mod coinciding;
 mod family;
 mod list;
 mod losses;
-mod problem;
 pub(super) mod rest;
 #[cfg(test)]
 mod tests;
@@ -22,35 +21,28 @@ pub(in crate::analysis) mod words;
 
 use std::collections::BTreeSet;
 
-use crate::analysis::design::{Cascade, Regression, Still, Trajectories};
-use crate::plant::Plant;
+use crate::analysis::design::{Still, Trajectories};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
+use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
 use family::Family;
-use problem::Observation;
 
 pub(super) use list::List;
-pub(super) use problem::{SHARE_OF_REMARKS, TrajectoryProblem, identifiable};
 
 /// The necessary motion, and combinations of the parameters whose zeros lower the rank.
-pub(super) fn of(
-    plant: &Plant,
-    domain: &Domain,
-    cascade: &Cascade,
-    regression: &Regression,
-) -> (Trajectories, Vec<Expr>) {
-    let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
+pub(super) fn of(problem: &ObservabilityProblem<'_>) -> (Trajectories, Vec<Expr>) {
+    let &ObservabilityProblem { plant, domain, .. } = problem;
     let inputs = problem.inputs();
-    let constant = problem.solve(domain, &problem.held(&inputs));
+    let constant = problem.solve_along(domain, &problem.held(&inputs));
     let by_itself = constant.as_ref().ok().map(Observation::is_full).or((inputs == Still::Nothing).then_some(true));
     // The shortest rows of full rank are those of the fewest moving signals.
-    let still = (by_itself == Some(true)).then(|| problem.solve(domain, &problem.held(&Still::Plant)));
+    let still = (by_itself == Some(true)).then(|| problem.solve_along(domain, &problem.held(&Still::Plant)));
     let free;
     let shortest = still.iter().chain([&constant]).flatten().find(|observed| observed.is_full());
     let observed = if shortest.is_some() {
         shortest
     } else {
-        free = problem.solve(domain, &BTreeSet::new());
+        free = problem.solve_along(domain, &BTreeSet::new());
         free.as_ref().ok()
     };
     let special = observed.and_then(|observed| {
@@ -62,7 +54,7 @@ pub(super) fn of(
     let (constants, all) = special.unwrap_or_default();
     let parameters = all && !coincide();
     let domain = &assuming(domain, &constants, &[]);
-    let problem = TrajectoryProblem { domain, ..problem };
+    let problem = problem.on(domain);
     let mut list = List::new(&problem, &[]);
     match (&constant, by_itself) {
         (Ok(observed), Some(true)) => problem.under_constant_inputs(observed, &constants, &mut list),
@@ -83,7 +75,7 @@ pub(super) fn assuming(domain: &Domain, nonzero: &[Expr], positive: &[Expr]) -> 
     domain
 }
 
-impl TrajectoryProblem<'_> {
+impl ObservabilityProblem<'_> {
     /// Adds the trajectories that hide unknowns which are identifiable while all inputs are constant: with inputs that
     /// move, or with constant ones.
     fn under_constant_inputs(&self, observed: &Observation, conditions: &[Expr], list: &mut List<'_>) {
@@ -123,7 +115,7 @@ impl TrajectoryProblem<'_> {
             list.add(&Family { set: self.whole(still), observed, moves: true });
         };
         let inputs: Vec<Symbol> = self.plant.commanded().collect();
-        let solved = |still: &Still| self.solve(self.domain, &self.held(still)).ok();
+        let solved = |still: &Still| self.solve_along(self.domain, &self.held(still)).ok();
         for still in std::iter::once(self.inputs()).chain(inputs.iter().map(|input| Still::Inputs(vec![*input]))) {
             let observed = solved(&still);
             restrict(still, observed);

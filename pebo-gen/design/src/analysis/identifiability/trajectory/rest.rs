@@ -5,26 +5,17 @@
 //! equilibrium is a point at which every rate vanishes. "At rest" is a statement on points that were found: with no
 //! equilibrium, or none that was found, nothing is said.
 
-use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Still, Trajectories};
-use crate::plant::Plant;
-use pebo_cas::Domain;
+use crate::analysis::design::{BlindTrajectory, Still, Trajectories};
 
 use super::family::Family;
 use super::list::List;
-use super::problem::{SHARE_OF_REMARKS, TrajectoryProblem};
+use crate::analysis::identifiability::problem::{ObservabilityProblem, SHARE_OF_REMARKS};
 
 /// Adds to the trajectories of a regression those at equilibria.
-pub(in crate::analysis::identifiability) fn add(
-    trajectories: &mut Trajectories,
-    plant: &Plant,
-    domain: &Domain,
-    cascade: &Cascade,
-    regression: &Regression,
-) {
+pub(in crate::analysis::identifiability) fn add(trajectories: &mut Trajectories, problem: &ObservabilityProblem<'_>) {
     let Some(by_itself) = trajectories.by_itself else { return };
-    let problem = TrajectoryProblem { plant, domain, cascade, regression, unknowns: regression.eta.len() };
-    let mut list = List::new(&problem, &trajectories.blind);
-    let identified = plant.arena.budget().share(SHARE_OF_REMARKS, || problem.at_rest(&mut list));
+    let mut list = List::new(problem, &trajectories.blind);
+    let identified = problem.plant.arena.budget().share(SHARE_OF_REMARKS, || problem.at_rest(&mut list));
     let is_complete = list.is_complete;
     let (hidden, mut open): (Vec<_>, Vec<_>) = list.statements().into_iter().partition(BlindTrajectory::is_decided);
     // With constant inputs as much is hidden as at an equilibrium, or less.
@@ -37,14 +28,14 @@ pub(in crate::analysis::identifiability) fn add(
     trajectories.blind.extend(open);
 }
 
-impl TrajectoryProblem<'_> {
+impl ObservabilityProblem<'_> {
     /// Adds the equilibria at which unknowns are hidden. True if there are others, at almost all of which none is.
     fn at_rest(&self, list: &mut List<'_>) -> bool {
         let (whole, held) = (self.whole(Still::Plant), self.held(&Still::Plant));
         let Ok(families) = self.equilibria() else {
             list.is_complete = false;
             // What is hidden while the signals are constant is so at equilibria too.
-            match self.solve(self.domain, &held) {
+            match self.solve_along(self.domain, &held) {
                 Ok(observed) if !observed.is_full() => list.add(&Family { set: whole, observed, moves: false }),
                 _ => list.leave_open(&whole, None),
             }

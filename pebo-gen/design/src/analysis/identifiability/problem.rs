@@ -1,38 +1,44 @@
-//! The observability problem on a set of trajectories: the directions of the unknowns that no derivative of the rows
-//! observes.
+//! The observability problem: the directions of the unknowns that no derivative of the rows observes.
+//!
+//! In: a regression on a domain, and signals that are constant. Out: rows of the rank of all derivatives, and the
+//! directions that they do not observe. A point proves a rank from below, exact algebra the directions.
 
 use std::collections::BTreeSet;
 
-use crate::analysis::design::{BlindTrajectory, Cascade, Regression, Still, TrajectoryCondition};
-use crate::analysis::identifiability::flow::{Flow, effective, without_psi};
+use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
-/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
-pub(in crate::analysis::identifiability) const SHARE_OF_REMARKS: u64 = 8;
+use super::flow::{Flow, effective, without_psi};
 
-/// Size of the rows with their derivatives up to which exact algebra is done on them: directions, determinants.
+/// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
+pub(super) const SHARE_OF_REMARKS: u64 = 8;
+
+/// Size of the rows with their derivatives up to which remarks do exact algebra on them: directions, determinants.
 const MOST_PARTS: usize = 600;
 
-/// An observability problem on trajectories of a plant.
-pub(in crate::analysis::identifiability) struct TrajectoryProblem<'a> {
-    pub(in crate::analysis::identifiability) plant: &'a Plant,
-    pub(in crate::analysis::identifiability) domain: &'a Domain,
-    pub(in crate::analysis::identifiability) cascade: &'a Cascade,
-    pub(in crate::analysis::identifiability) regression: &'a Regression,
-    pub(in crate::analysis::identifiability) unknowns: usize,
+/// The problem of observing the unknowns of a regression on a domain of a plant.
+#[derive(Clone, Copy)]
+pub(super) struct ObservabilityProblem<'a> {
+    pub(super) plant: &'a Plant,
+    pub(super) domain: &'a Domain,
+    pub(super) cascade: &'a Cascade,
+    pub(super) regression: &'a Regression,
+    pub(super) left_inverse: Option<&'a LeftInverse>,
 }
 
 /// The observations of the rows with their derivatives on a trajectory.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Observation {
-    /// Rows of the same rank as all derivatives.
+    /// Rows of the same rank as all derivatives, with a fundamental matrix at its initial value.
     pub(super) stack: Vec<Vec<Expr>>,
     /// Directions that are unobservable in them.
     pub(super) hidden: Vec<Vec<Expr>>,
+    /// True if they are unobservable for the given values of the parameters alone.
+    pub(super) is_special: bool,
 }
 
 impl Observation {
@@ -42,16 +48,44 @@ impl Observation {
     }
 }
 
-impl TrajectoryProblem<'_> {
-    /// Solves the problem on the trajectories that remain in a domain while these signals are constant.
-    pub(super) fn solve(&self, domain: &Domain, held: &BTreeSet<Symbol>) -> Result<Observation, Obstacle> {
-        let &Self { plant, cascade, regression, unknowns, .. } = self;
-        let arena = &plant.arena;
+impl<'a> ObservabilityProblem<'a> {
+    /// The problem on another domain.
+    pub(super) fn on<'b>(&self, domain: &'b Domain) -> ObservabilityProblem<'b>
+    where
+        'a: 'b,
+    {
+        ObservabilityProblem { domain, ..*self }
+    }
+
+    /// The number of unknowns.
+    pub(super) fn unknowns(&self) -> usize {
+        self.regression.eta.len()
+    }
+
+    /// Solves the problem on all trajectories, for all values of the parameters or, where these hide more, for the given
+    /// ones.
+    pub(super) fn solve(&self) -> Result<Observation, Obstacle> {
+        self.solve_on(self.domain, &BTreeSet::new(), usize::MAX)
+    }
+
+    /// Solves the problem on the trajectories that remain in a domain while these signals are constant, for a remark.
+    pub(super) fn solve_along(&self, domain: &Domain, held: &BTreeSet<Symbol>) -> Result<Observation, Obstacle> {
+        let observed = self.solve_on(domain, held, MOST_PARTS)?;
+        if observed.is_special { Err(Obstacle::NoWitness) } else { Ok(observed) }
+    }
+
+    fn solve_on(&self, domain: &Domain, held: &BTreeSet<Symbol>, most_parts: usize) -> Result<Observation, Obstacle> {
+        let &Self { plant, cascade, regression, .. } = self;
+        let (arena, unknowns) = (&plant.arena, self.unknowns());
         let mut flow = Flow::along(plant, domain, cascade, held)?;
         let mut latest = effective(arena, domain, &flow, &regression.phi_1, &regression.primitive_1);
         let mut stack = without_zeros(arena, domain, without_psi(plant, &latest));
         let mut rank = proved_rank(arena, domain, &stack, unknowns);
-        let mut hidden = None;
+        let hidden_from = |stack: &[Vec<Expr>], rank: usize| {
+            check_size(plant, stack, most_parts)?;
+            hidden_from(arena, domain, stack, unknowns, rank)
+        };
+        let mut settled = None;
         for _ in 1..unknowns {
             if rank == unknowns {
                 break;
@@ -61,35 +95,32 @@ impl TrajectoryProblem<'_> {
             stack.extend(without_zeros(arena, domain, without_psi(plant, &latest)));
             let next = proved_rank(arena, domain, &stack, unknowns);
             if next == rank {
-                self.check_size(&stack)?;
                 // No derivative adds to a rank that one derivative did not raise: by exact algebra, both times.
-                let vectors = null_vectors(arena, domain, &stack, unknowns)?;
-                if vectors.len() == null_vectors(arena, domain, &before, unknowns)?.len() {
-                    hidden = Some(vectors);
+                let found = hidden_from(&stack, rank)?;
+                if found.0.len() == hidden_from(&before, rank)?.0.len() {
+                    settled = Some(found);
                     break;
                 }
             }
             rank = next;
             flow.advance(plant);
         }
-        let hidden = match hidden {
-            Some(hidden) => hidden,
-            None if rank == unknowns => Vec::new(),
+        let (hidden, is_special) = match settled {
+            Some(found) => found,
+            None if rank == unknowns => (Vec::new(), false),
             // As many derivatives as there are unknowns have the full rank.
-            None => {
-                self.check_size(&stack)?;
-                null_vectors(arena, domain, &stack, unknowns)?
-            }
+            None => hidden_from(&stack, rank)?,
         };
         if hidden.is_empty() && rank < unknowns {
-            return Err(Obstacle::NoWitness);
+            Err(Obstacle::NoWitness)
+        } else {
+            Ok(Observation { stack, hidden, is_special })
         }
-        Ok(Observation { stack, hidden })
     }
 
-    /// An obstacle if the rows are too long for exact algebra.
+    /// An obstacle if the rows are too long for the exact algebra of a remark.
     pub(super) fn check_size(&self, stack: &[Vec<Expr>]) -> Result<(), Obstacle> {
-        if self.plant.arena.postorder(&stack.concat()).len() > MOST_PARTS { Err(Obstacle::TooLarge) } else { Ok(()) }
+        check_size(self.plant, stack, MOST_PARTS)
     }
 
     /// The signals that are constant.
@@ -102,7 +133,7 @@ impl TrajectoryProblem<'_> {
     }
 
     /// All inputs, if there are any.
-    pub(in crate::analysis::identifiability) fn inputs(&self) -> Still {
+    pub(super) fn inputs(&self) -> Still {
         let inputs: Vec<Symbol> = self.plant.commanded().collect();
         if inputs.is_empty() { Still::Nothing } else { Still::Inputs(inputs) }
     }
@@ -126,6 +157,29 @@ impl TrajectoryProblem<'_> {
     }
 }
 
+fn check_size(plant: &Plant, stack: &[Vec<Expr>], most_parts: usize) -> Result<(), Obstacle> {
+    if plant.arena.postorder(&stack.concat()).len() > most_parts { Err(Obstacle::TooLarge) } else { Ok(()) }
+}
+
+/// Vectors that every row provably annihilates, as formulas in the parameters; where these do not explain the rank that
+/// was found, those at the given values of the parameters, and true if they are more.
+fn hidden_from(
+    arena: &Arena,
+    domain: &Domain,
+    rows: &[Vec<Expr>],
+    columns: usize,
+    rank: usize,
+) -> Result<(Vec<Vec<Expr>>, bool), Obstacle> {
+    let general = null_vectors(arena, domain, rows, columns)?;
+    if general.len() + rank == columns || domain.fixed.is_empty() {
+        return Ok((general, false));
+    }
+    let valued: Vec<Vec<Expr>> = rows.iter().map(|row| arena.substitute_all(row, &domain.fixed)).collect();
+    let special = null_vectors(arena, &domain.at_given_values(arena), &valued, columns)?;
+    let is_special = special.len() > general.len();
+    Ok((if is_special { special } else { general }, is_special))
+}
+
 /// The rows with zero for entries that vanish on the domain: a normal form may not show that they follow from its
 /// equations.
 fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Vec<Vec<Expr>> {
@@ -141,7 +195,7 @@ fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Ve
 
 /// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction
 /// has a component that is one, and zero in the others.
-pub(crate) fn identifiable(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+pub(super) fn identifiable(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
     let own = |index: usize| {
         (0..symbols.len()).find(|&column| {
             let entry = |(other, vector): (usize, &Vec<Expr>)| {
