@@ -80,11 +80,8 @@ impl Derived {
         };
         if let Some(best) = best {
             let mut best = search.candidates.swap_remove(best);
-            if let (Some((candidate, declaration)), Some(first)) =
-                (&search.declared, best.derivation.diagnostics.first_mut())
-            {
-                let note = search::words::declared(candidate, declaration);
-                *first = first.clone().note(note).help(declaration.help(&candidate.plant));
+            if let Some(first) = best.derivation.diagnostics.first_mut() {
+                *first = search.declare(first.clone());
             }
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }

@@ -80,7 +80,7 @@ impl SearchReport {
             model: plant.name.clone(),
             verdict: search.verdict.word(),
             candidates: search.candidates.iter().map(candidate).collect(),
-            assumed: search.declared.as_ref().map(|(candidate, declaration)| AssumedReport {
+            assumed: search.declared.first().map(|(candidate, declaration)| AssumedReport {
                 assume: declaration.assumed(&plant.arena),
                 declare: declaration.lines(&candidate.plant).replace('`', ""),
                 phi: candidate.formulas(),
@@ -156,9 +156,7 @@ pub fn search_summary(plant: &Plant, search: &Search) -> String {
     for candidate in &search.candidates {
         text.extend([super::text::summary(&candidate.plant, &candidate.derivation).as_str()]);
     }
-    if let Some((candidate, declaration)) = &search.declared {
-        text.extend([format!("  {}\n", declared(candidate, declaration))]);
-    }
+    text.extend(search.declared.iter().map(|found| format!("  {}\n", declared(found))));
     for bound in search.bounds() {
         text.extend([format!("  bound: {}\n", bound.sentence(&plant.arena))]);
         text.extend(bound.certificate(&plant.arena).iter().map(|line| format!("  certificate: {line}\n")));

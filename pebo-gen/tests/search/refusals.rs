@@ -83,7 +83,7 @@ fn a_sign_that_would_do_is_named() {
     let lines = "parameters: [k]\nx: [v]\ny: [q]\nu: [F]\nf_x: {v: (F - k*q)/v - k*v}\nf_y: {q: v^2}";
     let (_, found) = search(lines, None);
     assert_eq!(found.verdict, SearchVerdict::Undecided);
-    let (candidate, declaration) = found.declared.expect("an assumption");
+    let (candidate, declaration) = found.declared.into_iter().next().expect("an assumption");
     assert!(matches!(&declaration, Declaration::Positive(signs) if signs.len() == 1), "{declaration:?}");
     assert_eq!(candidate.plant.phi.len(), 1);
     let (_, found) = search(&format!("{lines}\nassume: [v > 0]"), None);

@@ -1,12 +1,21 @@
-//! The same plant with fewer states to recover.
+//! The same plant with fewer states to recover: they are unmeasured signals, or outputs.
 
 use std::collections::BTreeSet;
 
 use pebo_cas::{Expr, Symbol};
 
-use super::plant::{Plant, State};
+use super::plant::{Output, Plant, State};
 
 impl Plant {
+    /// The same plant where a state is an output.
+    #[must_use]
+    pub fn with_measured(&self, state: &State) -> Self {
+        let mut plant = self.clone();
+        plant.x.retain(|other| other.symbol != state.symbol);
+        plant.y.push(Output { symbol: state.symbol, rate: Some(state.rate), value: None, span: state.rate.span });
+        plant
+    }
+
     /// The same plant where these states are unmeasured signals instead: their rates are unknown, and so are what holds
     /// of them and the values of outputs that depend on them.
     #[must_use]

@@ -1,8 +1,8 @@
 //! Declarations with which a transform is accepted, found by trying them.
 //!
 //! In: a search without a transform that is accepted. Out: signs of states, angles among them, bounds of these, any
-//! class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals,
-//! where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
+//! class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals or
+//! its outputs, where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
 
 use std::collections::BTreeSet;
 
@@ -34,6 +34,8 @@ pub enum Declaration {
     Without(Vec<Symbol>),
     /// These states are unmeasured signals with an unknown rate, and are not recovered.
     Unmeasured(Vec<Symbol>),
+    /// This state is measured.
+    Measured(Symbol),
 }
 
 impl Declaration {
@@ -54,10 +56,15 @@ impl Declaration {
                 let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
                 format!("no {}", listed(names))
             }
-            Self::Unmeasured(_) => {
-                let states: Vec<String> = plant.x.iter().map(|state| arena.name(state.symbol)).collect();
-                let signals: Vec<String> = plant.w.iter().map(|signal| arena.name(*signal)).collect();
-                format!("`x: [{}]`, `w: [{}]`", listed(states), listed(signals))
+            Self::Unmeasured(_) | Self::Measured(_) => {
+                let names =
+                    |symbols: Vec<Symbol>| listed(symbols.into_iter().map(|symbol| arena.name(symbol)).collect());
+                let (key, others) = match self {
+                    Self::Unmeasured(_) => ("w", plant.w.clone()),
+                    _ => ("y", plant.y.iter().map(|output| output.symbol).collect()),
+                };
+                let states = plant.x.iter().map(|state| state.symbol).collect();
+                format!("`x: [{}]`, `{key}: [{}]`", names(states), names(others))
             }
         }
     }
@@ -77,9 +84,12 @@ impl Declaration {
                 let recovered = names(plant.x.iter().map(|state| state.symbol).collect());
                 let (lines, left_out) = (self.lines(plant), names(states.clone()));
                 format!(
-                    "measure another signal, or for {recovered} alone write {lines} and leave out what `f_x`, `g_y` and \
-                     `identities` say of {left_out}"
+                    "for {recovered} alone write {lines} and leave out what `f_x`, `g_y` and `identities` say of {left_out}"
                 )
+            }
+            Self::Measured(state) => {
+                let state = arena.name(*state);
+                format!("measure `{state}` too: write {}, and the rate of `{state}` under `f_y`", self.lines(plant))
             }
             Self::AnyClass => "leave out `class`".to_owned(),
             Self::Without(states) => {
@@ -95,7 +105,7 @@ impl Declaration {
         match self {
             Self::Positive(states) => signs(arena, states),
             Self::Bounded(angles) => bounds(arena, angles),
-            Self::Angles(_) | Self::AnyClass | Self::Without(_) | Self::Unmeasured(_) => Vec::new(),
+            Self::Angles(_) | Self::AnyClass | Self::Without(_) | Self::Unmeasured(_) | Self::Measured(_) => Vec::new(),
         }
     }
 }
@@ -123,9 +133,40 @@ pub(super) fn helpful(
     accepted: Accepted<'_>,
 ) -> Option<(Candidate, Declaration)> {
     with_signs(problem, candidates)
+        .or_else(|| with_smooth_states(problem, class, accepted))
         .or_else(|| with_angles(problem, class, accepted))
         .or_else(|| with_bounds(problem, class, accepted))
         .or_else(|| with_any_class(problem, class, accepted))
+}
+
+/// The transform of the plant in which the states whose signs divide its formulas are positive: friction while an axis
+/// turns one way.
+fn with_smooth_states(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
+    let (plant, arena) = (problem.plant, problem.arena);
+    let values = plant.y.iter().filter_map(|output| output.value).map(|value| value.expr);
+    let dividers = arena.dividers(&plant.rates().into_values().chain(values).collect::<Vec<Expr>>());
+    let mut states = without_sign(problem);
+    states.retain(|state| dividers.contains(&arena.of_symbol(*state)));
+    if states.is_empty() || !problem.goes_on() {
+        return None;
+    }
+    let plant = plant.with_positive(&states);
+    let candidate = arena.budget().share(SHARE, || accepted(&plant, class))?;
+    Some((candidate, Declaration::Positive(states)))
+}
+
+/// The states of which the assumptions do not say that they are positive, or negative.
+fn without_sign(problem: &Problem<'_>) -> Vec<Symbol> {
+    let arena = problem.arena;
+    let is_unknown = |state: &Symbol| {
+        let state = arena.of_symbol(*state);
+        ![state, arena.neg(state)].iter().any(|e| problem.domain.implies(arena, *e, Relation::Positive))
+    };
+    problem.x.iter().copied().filter(is_unknown).collect()
 }
 
 /// The first transform that recovers the states if states without a known sign are positive.
@@ -133,11 +174,7 @@ fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candid
     let arena = problem.arena;
     let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
     let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
-    let unknown = |state: &Symbol| {
-        let state = arena.of_symbol(*state);
-        ![state, arena.neg(state)].iter().any(|e| problem.domain.implies(arena, *e, Relation::Positive))
-    };
-    let signs: Vec<Symbol> = problem.x.iter().copied().filter(unknown).collect();
+    let signs = without_sign(problem);
     if signs.is_empty() || !problem.goes_on() {
         return None;
     }

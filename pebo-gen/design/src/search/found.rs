@@ -14,7 +14,7 @@ pub struct Search {
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
     /// A transform that would be accepted with a declaration, where none is accepted as it is.
-    pub declared: Option<(Candidate, Declaration)>,
+    pub declared: Vec<(Candidate, Declaration)>,
     /// The bound on the rank of dphi/dx for transforms with a plain cascade, where the search computed it: for smooth
     /// ones; where that says nothing, as of every plant without inputs, for those affine in x.
     pub bound: Option<Bound>,

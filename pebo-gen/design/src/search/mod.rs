@@ -111,8 +111,16 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
-    let partial = || partial::partial(&problem, &candidates, class, &accepted);
-    let declared = if found { None } else { without_unseen().or_else(helpful).or_else(partial) };
+    // What is to be declared, or else the sensor that is lacking, and what can be had without it.
+    let lacking = || {
+        let measured = partial::measured(&problem, class, &accepted);
+        measured.into_iter().chain(partial::partial(&problem, &candidates, class, &accepted)).collect()
+    };
+    let declared: Vec<_> = if found {
+        Vec::new()
+    } else {
+        without_unseen().or_else(helpful).map_or_else(lacking, |declared| vec![declared])
+    };
     Search { verdict, candidates, declared, bound, affine, generalised, tried }
 }
 

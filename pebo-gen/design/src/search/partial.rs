@@ -2,14 +2,16 @@
 //!
 //! In: a plant of which no transform that recovers all states is accepted. Out: the plant with a few states among its
 //! unmeasured signals, whose rates are then unknown, with a transform that recovers the others. As few states as
-//! possible are given up, as far as plants were tried.
+//! possible are given up, as far as plants were tried. Or the plant with one state among its outputs: the sensor that it
+//! lacks.
 
-use pebo_cas::Symbol;
+use pebo_cas::{Expr, Symbol};
 
 use super::candidate::Candidate;
 use super::declaration::{Accepted, Declaration, unseen};
 use super::problem::Problem;
 use crate::analysis::Class;
+use crate::plant::State;
 
 /// So many sets of states are given up, one after the other.
 const MOST_SETS: usize = 24;
@@ -43,6 +45,29 @@ pub(super) fn partial(
     };
     let unseen = candidates.iter().find_map(Candidate::hidden_states).filter(|states| states.len() < plant.x.len());
     budget.share(SHARE, || unseen.into_iter().chain(sets(problem)).take(MOST_SETS).find_map(recovered))
+}
+
+/// The first transform that recovers the other states where one that moves is measured.
+pub(super) fn measured(
+    problem: &Problem<'_>,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
+    let (plant, arena) = (problem.plant, problem.arena);
+    if plant.class.is_some() || plant.x.len() > MOST_STATES {
+        return None;
+    }
+    let is_output = |state: Expr| plant.y.iter().any(|output| output.value.is_some_and(|value| value.expr == state));
+    let is_new = |state: &&State| !arena.is_zero(state.rate.expr) && !is_output(arena.of_symbol(state.symbol));
+    let recovered = |state: &State| {
+        let plant = plant.with_measured(state);
+        if !problem.goes_on() || plant.x.is_empty() || !unseen(&plant).is_empty() {
+            return None;
+        }
+        let candidate = arena.budget().share(SHARE, || accepted(&plant, class))?;
+        Some((candidate, Declaration::Measured(state.symbol)))
+    };
+    arena.budget().share(SHARE, || plant.x.iter().filter(is_new).find_map(recovered))
 }
 
 /// The sets of some but not all states, small ones first.

@@ -236,7 +236,7 @@ fn states_are_recovered_without_those_that_outputs_do_not_tell_apart() {
     let rates = "y: [q, r, s]\nu: [v]\nf_y: {q: a - q, r: b + c}";
     let search =
         solve(&plant(&format!("x: [a, b, c]\n{rates}\nf_x: {{a: v, b: 0, c: 0}}\ng_y: {{s: a + b + c}}")), None);
-    let (candidate, declaration) = search.declared.expect("a partial observer");
+    let (candidate, declaration) = search.declared.into_iter().next_back().expect("a partial observer");
     assert_eq!(declaration.lines(&candidate.plant), "`x: [a]`, `w: [b, c]`");
     let written = plant(&format!("x: [a]\nw: [b, c]\n{rates}\nf_x: {{a: v}}"));
     let written = solve(&written, None).candidates.swap_remove(0);
@@ -247,8 +247,26 @@ fn states_are_recovered_without_those_that_outputs_do_not_tell_apart() {
 #[test]
 fn a_state_whose_rate_no_transform_covers_is_an_unmeasured_signal() {
     let lines = "x: [v, d]\ny: [q, s]\nu: [f]\nf_x: {v: f, d: f*sin(d) + log(v)}\nf_y: {q: v, s: d^3}";
-    let (candidate, declaration) = solve(&plant(lines), None).declared.expect("a partial observer");
+    let (candidate, declaration) =
+        solve(&plant(lines), None).declared.into_iter().next_back().expect("a partial observer");
     assert_eq!(declaration.lines(&candidate.plant), "`x: [v]`, `w: [d]`");
     // The rate of d is unknown, and so is that v is positive.
     assert!(candidate.plant.conditions.is_empty() && candidate.derivation.conditions.is_empty());
+}
+
+#[test]
+fn the_sensor_that_is_lacking_is_named() {
+    // Two loads on one axis: only their sum moves it.
+    let lines = "x: [a, w, b]\ny: [q]\nu: [v]\nf_x: {a: b*sin(w), w: v - a*exp(w), b: 0}\nf_y: {q: exp(w)}";
+    let declared = solve(&plant(lines), None).declared;
+    let lines: Vec<String> = declared.iter().map(|(found, lacking)| lacking.lines(&found.plant)).collect();
+    assert_eq!(lines[0], "`x: [a, b]`, `y: [q, w]`", "{lines:?}");
+}
+
+#[test]
+fn a_state_in_friction_may_keep_its_sign() {
+    let friction = "parameters: {J: 2}\nx: [w, c]\ny: [q]\nu: [i]\nf_x: {w: (i - c*sign(w))/J, c: 0}\nf_y: {q: w}";
+    let (candidate, declaration) = solve(&plant(friction), None).declared.swap_remove(0);
+    assert_eq!(declaration.lines(&candidate.plant), "`assume: [w > 0]`");
+    assert!(candidate.is_full());
 }

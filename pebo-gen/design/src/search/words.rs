@@ -219,7 +219,9 @@ impl Search {
     /// states.
     pub fn refusal(&self, plant: &Plant, span: Span) -> Diagnostic {
         if plant.arena.budget().is_exhausted() {
-            return Diagnostic::limit_reached("the search for phi", span);
+            let limited = Diagnostic::limit_reached("the search for phi", span);
+            let settled = self.bounds().filter(|bound| bound.excludes()).map(|bound| bound.sentence(&plant.arena));
+            return self.declared.iter().map(declared).chain(settled).fold(limited, Diagnostic::note);
         }
         let states: Vec<String> = plant.x.iter().map(|state| plant.arena.name(state.symbol)).collect();
         let states = listed(states.iter().map(String::as_str));
@@ -235,9 +237,7 @@ impl Search {
         for candidate in self.nearest().take(2) {
             diagnostic = diagnostic.note(candidate.sentence());
         }
-        if let Some((candidate, declaration)) = &self.declared {
-            diagnostic = diagnostic.note(declared(candidate, declaration));
-        }
+        diagnostic = self.declared.iter().map(declared).fold(diagnostic, Diagnostic::note);
         // A statement on all smooth ones holds for those affine in x too.
         let smooth = self.bounds().find(|bound| bound.excludes() && bound.class == BoundClass::Smooth);
         let implied =
@@ -246,12 +246,26 @@ impl Search {
             diagnostic = diagnostic.note(bound.sentence(&plant.arena));
         }
         diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
-        diagnostic.help(match &self.declared {
-            Some((candidate, declaration)) => declaration.help(&candidate.plant),
-            None => {
-                "measure another signal, assume the signs of what is positive, or write a phi of your own".to_owned()
-            }
-        })
+        let general = "measure another signal, assume the signs of what is positive, or write a phi of your own";
+        diagnostic.help(self.help().unwrap_or_else(|| general.to_owned()))
+    }
+
+    /// The refusal of the best transform, with the declarations with which one is accepted.
+    pub fn declare(&self, refusal: Diagnostic) -> Diagnostic {
+        let noted = self.declared.iter().map(declared).fold(refusal, Diagnostic::note);
+        match self.help() {
+            Some(help) => noted.help(help),
+            None => noted,
+        }
+    }
+
+    /// The advice to write one of the declarations.
+    fn help(&self) -> Option<String> {
+        let help = |(candidate, declaration): &(Candidate, Declaration)| declaration.help(&candidate.plant);
+        let all: Vec<String> = self.declared.iter().map(help).collect();
+        let is_partial = matches!(self.declared.first(), Some((_, Declaration::Unmeasured(_))));
+        let first = is_partial.then(|| "measure another signal".to_owned());
+        (!all.is_empty()).then(|| first.into_iter().chain(all).collect::<Vec<_>>().join("; or "))
     }
 
     /// The refusal of a given transform, with the search's result in its place.
@@ -264,10 +278,7 @@ impl Search {
             let refusal = self.killing_fields(plant).into_iter().fold(refusal, Diagnostic::note);
             return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
         }
-        let refusal = match &self.declared {
-            Some((candidate, declaration)) => refusal.note(declared(candidate, declaration)),
-            None => refusal,
-        };
+        let refusal = self.declared.iter().map(declared).fold(refusal, Diagnostic::note);
         match self.bounds().find(|bound| bound.excludes()) {
             Some(bound) => {
                 let noted = refusal.note(bound.sentence(&plant.arena));
@@ -286,7 +297,7 @@ impl Search {
 }
 
 /// The sentence that a transform is accepted with a declaration.
-pub fn declared(candidate: &Candidate, declaration: &Declaration) -> String {
+pub fn declared((candidate, declaration): &(Candidate, Declaration)) -> String {
     let lines = declaration.lines(&candidate.plant);
     format!("with {lines}, phi = [{}] is accepted", candidate.formulas().join(", "))
 }
