@@ -155,6 +155,8 @@ struct BlindReport {
     #[serde(rename = "while")]
     place: String,
     seen: Vec<String>,
+    /// The number of other functions of the unknowns that are observable.
+    functions: usize,
     hidden: Vec<Vec<String>>,
 }
 
@@ -354,9 +356,11 @@ fn regression(plant: &Plant, claim: &Claim<Regression>) -> RegressionReport {
 }
 
 fn blind(plant: &Plant, blind: &BlindTrajectory) -> BlindReport {
+    let (seen, of_states) = blind.combinations(plant);
     BlindReport {
         place: blind.condition(plant),
-        seen: printed(&plant.arena, &blind.identifiable),
+        seen: printed(&plant.arena, &seen),
+        functions: of_states.len(),
         hidden: matrix(&plant.arena, &blind.hidden),
     }
 }

@@ -104,7 +104,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     }];
     if !result.singular_where.is_empty() {
         let places = listed(result.singular_where.iter().map(String::as_str));
-        lines.push(format!("except where {places}: while the plant stays there, not all estimates improve"));
+        lines.push(format!("except where {places}: there one instant does not identify all unknowns"));
     }
     if result.kind == Excitation::Instant && !result.everywhere_else {
         lines.push("this holds at almost every point; the points where the rank drops were not all found".to_owned());

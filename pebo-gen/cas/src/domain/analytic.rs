@@ -1,4 +1,4 @@
-//! Rewrites absolute values, signs, extremes and saturations by the signs of a domain.
+//! Rewrites absolute values, roots of squares, signs, extremes and saturations by the signs of a domain.
 //!
 //! In: a domain, as a cell of one, and formulas. Out: the same functions on the domain, where each of these operations
 //! is the branch that the domain implies: on a cell with `a < 0`, `max(0, a)` is 0, and so are its derivatives. An
@@ -8,7 +8,8 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
-use crate::{Arena, Domain, Relation};
+use crate::number::rational::half;
+use crate::{Arena, Domain, Product, Rational, Relation};
 
 impl Domain {
     /// The formulas by the branches that the domain implies.
@@ -18,6 +19,7 @@ impl Domain {
             let rebuilt = arena.rebuild(expr, &known);
             let branch = match arena.node(rebuilt) {
                 Node::Call(function, arguments) => self.branch(arena, function, &arguments),
+                Node::Product(product) => self.roots_of_squares(arena, &product),
                 _ => None,
             };
             known.insert(expr, branch.unwrap_or(rebuilt));
@@ -54,6 +56,27 @@ impl Domain {
         Self { manifold, ..self }
     }
 
+    /// A product with absolute values in place of roots of squares, where the domain implies the signs of these.
+    fn roots_of_squares(&self, arena: &Arena, product: &Product) -> Option<Expr> {
+        let is_even = |(_, power): &(Expr, Rational)| power.is_integer() && (power * &half()).is_integer();
+        let factor = |(base, power): &(Expr, Rational)| {
+            let Node::Product(square) = arena.node(*base) else { return None };
+            if power.is_integer() || square.coefficient.is_negative() || !square.factors.iter().all(is_even) {
+                return None;
+            }
+            let halves = square.factors.iter().map(|(base, power)| (*base, power * &half()));
+            let absolute = self.branch(arena, Function::Abs, &[arena.multiply(&Rational::ONE, halves)])?;
+            let coefficient = arena.power(arena.number(square.coefficient.clone()), power);
+            Some([(coefficient, Rational::ONE), (absolute, power + power)])
+        };
+        let found: Vec<Option<[(Expr, Rational); 2]>> = product.factors.iter().map(factor).collect();
+        let factors = product.factors.iter().zip(&found).flat_map(|(own, found)| match found {
+            Some(roots) => roots.to_vec(),
+            None => vec![own.clone()],
+        });
+        found.iter().any(Option::is_some).then(|| arena.multiply(&product.coefficient, factors))
+    }
+
     /// The branch of a non-smooth operation, if the domain implies one.
     fn branch(&self, arena: &Arena, function: Function, arguments: &[Expr]) -> Option<Expr> {
         let implies = |expr: Expr, relation| self.grants(arena, (expr, relation));
@@ -83,7 +106,6 @@ impl Domain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rational;
 
     #[test]
     fn operations_are_their_branches_where_the_domain_has_one() {
@@ -104,6 +126,10 @@ mod tests {
         assert_eq!(on(arena.sub(a, one), call(Function::Sat, &[a])), "1");
         assert_eq!(on(arena.sub(a, b), call(Function::Min, &[a, b])), "b");
         assert_eq!(on(b, call(Function::Abs, &[a])), "abs(a)");
+        let square = arena.mul(a, a);
+        assert_eq!(on(minus(a), arena.mul(b, arena.sqrt(square))), "-a*b");
+        assert_eq!(on(a, arena.sqrt(arena.mul(square, square))), "a^2");
+        assert_eq!(on(b, arena.sqrt(square)), "sqrt(a^2)");
         // A function of a function.
         let inner = arena.sub(call(Function::Abs, &[a]), a);
         assert_eq!(on(a, call(Function::Max, &[inner, minus(a)])), "0");

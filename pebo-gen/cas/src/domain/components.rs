@@ -79,18 +79,22 @@ impl OpenCell {
         let unsolved = there.manifold.unsolved(arena);
         let analytic = [unsolved, there.analytic(arena, formulas)].concat();
         let constants = groups.last();
-        let varies = |divider: Expr| {
+        let varies = |expr: Expr| {
             let is_constant = |symbol: &Symbol| constants.is_some_and(|constants| constants.contains(symbol));
-            !arena.symbols_of(&[divider]).iter().all(is_constant)
+            !arena.symbols_of(&[expr]).iter().all(is_constant)
         };
         // As it is on the manifold: there it may be a constant.
         let determined = there.manifold.determined();
-        let dividers = arena.dividers(&analytic).into_iter().map(|divider| arena.substitute(divider, &determined));
+        let dividers = there.dividers(arena, &analytic)?.into_iter();
+        let dividers = dividers.map(|divider| arena.substitute(divider, &determined));
         if let Some(divider) = dividers.into_iter().find(|divider| !there.has_sign(arena, *divider)) {
             if self.walls.contains(&divider) {
                 return Err(Obstacle::Unsolved(arena.print(divider)));
             }
-            return Ok(Finer::Cells(self.divided(arena, divider, varies(divider))));
+            // Constants have almost all values; where an equation binds them, they may be on a wall.
+            let is_bound = |equation: &Expr| !varies(*equation) && !arena.symbols_of(&[*equation]).is_empty();
+            let has_wall = varies(divider) || self.equations.iter().chain(&self.walls).any(is_bound);
+            return Ok(Finer::Cells(self.divided(arena, divider, has_wall)));
         }
         let reduced = there.manifold.reduced(arena);
         for (index, equation) in reduced.iter().enumerate() {
@@ -111,8 +115,8 @@ impl OpenCell {
         Ok(Finer::Whole(Box::new(Cell { domain: there, sides: self.cell.sides })))
     }
 
-    /// The cells on both sides of a divider, and on it if it varies.
-    fn divided(&self, arena: &Arena, divider: Expr, varies: bool) -> Vec<Self> {
+    /// The cells on both sides of a divider, and on it.
+    fn divided(&self, arena: &Arena, divider: Expr, has_wall: bool) -> Vec<Self> {
         let side = |side: Side| {
             let mut cell = self.cell.clone();
             cell.domain.facts.assume(side.positive(arena, divider), Relation::Positive);
@@ -120,7 +124,7 @@ impl OpenCell {
             Self { cell, equations: self.equations.clone(), walls: self.walls.clone() }
         };
         let mut cells = vec![side(Side::Positive), side(Side::Negative)];
-        if varies && !self.cell.domain.implies(arena, divider, Relation::NonZero) {
+        if has_wall && !self.cell.domain.implies(arena, divider, Relation::NonZero) {
             let walls = [self.walls.as_slice(), &[divider]].concat();
             cells.push(Self { cell: self.cell.clone(), equations: self.equations.clone(), walls });
         }
@@ -219,9 +223,16 @@ mod tests {
         assert_eq!(components(&[call(Function::Sat, &[arena.sub(a, c)])], &[]), ["a - c"]);
         assert_eq!(components(&[b], &[size(arena.sub(a, c))]), ["b, a - c > 0", "b, a - c < 0", "b, a - c"]);
         assert_eq!(components(&[b], &[size(c)]), ["b, c > 0", "b, c < 0"]);
+        // Constants that an equation binds.
+        let constants = arena.add(size(c), size(arena.sub(c, one)));
+        assert_eq!(components(&[constants], &[]), [""; 0]);
+        assert_eq!(components(&[size(c)], &[]), ["c"]);
+        // A root of a square is an absolute value too.
+        let root = arena.sqrt(arena.mul(b, b));
+        assert_eq!(components(&[arena.add(arena.mul(a, b), root)], &[]), ["a + 1, b > 0", "a - 1, b < 0", "b"]);
         assert_eq!(
             components(&[arena.sub(a, one)], &[size(arena.sub(a, c))]),
-            ["a - 1, 1 - c > 0", "a - 1, 1 - c < 0"]
+            ["a - 1, c - 1 > 0", "a - 1, c - 1 < 0"]
         );
     }
 }

@@ -3,14 +3,15 @@
 //! In: a regression on a domain, and signals that are constant. Out: rows of the rank of all derivatives, and the
 //! directions that they do not observe. A point proves a rank from below, exact algebra the directions.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
+use pebo_cas::forms::tidy::shortest;
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Arena, Domain, Expr, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
 use super::flow::{Flow, effective, without_psi};
 
@@ -152,7 +153,7 @@ impl<'a> ObservabilityProblem<'a> {
     /// The statement on trajectories that hide unknowns.
     pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
-        let identifiable = identifiable(&self.plant.arena, symbols, &observed.hidden);
+        let identifiable = identifiable(&self.plant.arena, self.domain, symbols, &observed.hidden);
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
     }
 }
@@ -193,23 +194,45 @@ fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Ve
     rows
 }
 
-/// The identifiable combinations of the unknowns: those that do not change along the hidden directions. Each direction
-/// has a component that is one, and zero in the others.
-pub(super) fn identifiable(arena: &Arena, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+/// The column of each hidden direction in which it has one, and the others zero: the rank is that of the other columns.
+pub(super) fn free_columns(arena: &Arena, hidden: &[Vec<Expr>], unknowns: usize) -> Vec<Option<usize>> {
     let own = |index: usize| {
-        (0..symbols.len()).find(|&column| {
+        (0..unknowns).find(|&column| {
             let entry = |(other, vector): (usize, &Vec<Expr>)| {
                 vector[column] == if other == index { arena.one() } else { arena.zero() }
             };
             hidden.iter().enumerate().all(entry)
         })
     };
-    let free: Vec<Option<usize>> = (0..hidden.len()).map(own).collect();
+    (0..hidden.len()).map(own).collect()
+}
+
+/// The identifiable combinations of the unknowns: those that do not change along the hidden directions, without
+/// denominators that may vanish.
+fn identifiable(arena: &Arena, domain: &Domain, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+    let free = free_columns(arena, hidden, symbols.len());
     let combination = |column: usize| {
-        let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| {
-            Some(arena.neg(arena.mul(vector[column], arena.of_symbol(symbols[(*free)?]))))
-        });
-        arena.sum(moved.chain([arena.of_symbol(symbols[column])]))
+        let slope = |vector: &Vec<Expr>| arena.neg(shortest(arena, domain, vector[column]));
+        let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| Some((slope(vector), (*free)?)));
+        let factors: Vec<(Expr, usize)> = moved.chain([(arena.one(), column)]).collect();
+        let whole = without_denominators(arena, domain, &factors);
+        arena.sum(whole.into_iter().map(|(factor, column)| arena.mul(factor, arena.of_symbol(symbols[column]))))
     };
     (0..symbols.len()).filter(|column| !free.contains(&Some(*column))).map(combination).collect()
+}
+
+/// Factors times the powers in their denominators that may vanish.
+fn without_denominators(arena: &Arena, domain: &Domain, factors: &[(Expr, usize)]) -> Vec<(Expr, usize)> {
+    let mut common: BTreeMap<Expr, Rational> = BTreeMap::new();
+    for (factor, _) in factors {
+        let Node::Product(product) = arena.node(*factor) else { continue };
+        for (base, power) in product.factors.iter().filter(|(_, power)| power.is_negative()) {
+            let most = common.entry(*base).or_insert(Rational::ZERO);
+            *most = most.clone().max(-power);
+        }
+    }
+    common.retain(|base, _| !domain.implies(arena, *base, Relation::NonZero));
+    let whole =
+        |factor: Expr| arena.multiply(&Rational::ONE, common.clone().into_iter().chain([(factor, Rational::ONE)]));
+    factors.iter().map(|(factor, column)| (whole(*factor), *column)).collect()
 }

@@ -7,9 +7,10 @@ use crate::analysis::design::{Claim, Excitation, Identifiability, Verdict};
 use crate::analysis::left_inverse::checking::at_phi;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
-use pebo_cas::Domain;
 use pebo_cas::domain::cells::{Cell, walls};
+use pebo_cas::domain::zero;
 use pebo_cas::tower::Obstacle;
+use pebo_cas::{Domain, Expr};
 
 use super::divided::{Formulas, kind, on_cells};
 use super::flow::varies;
@@ -29,6 +30,15 @@ pub(super) fn decide(
     if let [_] = regimes.as_slice() {
         return on_cells(domain, found);
     }
+    let is_identified = |claim: &Claim<Identifiability>| kind(claim).is_some_and(|kind| kind != Excitation::Never);
+    if let Some(between) = at_given_walls(plant, domain, &walls(&regimes)) {
+        let mut reported = Vec::new();
+        let claim = on_cells(&between, &mut reported)?;
+        if !is_identified(&claim) {
+            found.append(&mut reported);
+            return Ok(claim);
+        }
+    }
     let mut claims = Vec::new();
     for regime in &regimes {
         let mut reported = Vec::new();
@@ -42,7 +52,6 @@ pub(super) fn decide(
             return Ok(whole);
         }
     }
-    let is_identified = |claim: &Claim<Identifiability>| kind(claim).is_some_and(|kind| kind != Excitation::Never);
     if let Some((other, ..)) = claims.iter().find(|(_, claim, _)| !is_identified(claim)) {
         let is_given = |regime: &Cell| !domain.fixed.is_empty() && regime.domain.fixed == domain.fixed;
         let own = claims.iter().find(|(regime, claim, _)| is_given(regime) && is_identified(claim));
@@ -66,9 +75,11 @@ pub(super) fn decide(
     }
     // The values between the regimes are in none of them.
     for divider in walls(&regimes) {
-        let there = on_boundary(plant, domain, divider);
+        let there = on_boundary(plant, domain, &[divider]);
         joined.exclude(match on_cells(&there, &mut Vec::new()) {
-            Ok(claim) if is_identified(&claim) => SpecialValues::none(has_no_conditions(&claim)),
+            Ok(Claim { result: Some(result), verdict: Verdict::Proved }) => {
+                on_wall(plant, domain, divider, &result, &joined.constants)
+            }
             Ok(_) => SpecialValues { nonzero: vec![divider], complete: true },
             Err(_) => SpecialValues::none(false),
         });
@@ -76,13 +87,31 @@ pub(super) fn decide(
     Ok(joined.claim(plant, claims.len()))
 }
 
-/// Tests whether a claim holds for all parameters.
-fn has_no_conditions(claim: &Claim<Identifiability>) -> bool {
-    let of_trajectories = |result: &Identifiability| result.trajectories.as_ref().is_none_or(|all| all.parameters);
-    claim
-        .result
-        .as_ref()
-        .is_some_and(|result| result.constants.is_empty() && result.positive.is_empty() && of_trajectories(result))
+/// The domain at the given values of the parameters, if these are between regimes: where walls are zero.
+fn at_given_walls(plant: &Plant, domain: &Domain, walls: &[Expr]) -> Option<Domain> {
+    let arena = &plant.arena;
+    let is_zero = |wall: &&Expr| zero::decide(arena, arena.substitute(**wall, &domain.fixed), domain).is_zero();
+    let zero: Vec<Expr> = walls.iter().filter(is_zero).copied().collect();
+    (!zero.is_empty()).then(|| Domain { fixed: domain.fixed.clone(), ..on_boundary(plant, domain, &zero) })
+}
+
+/// The values of the parameters that a claim for those on a wall excludes, but for those that others exclude: wall and
+/// constant are zero there.
+fn on_wall(plant: &Plant, domain: &Domain, wall: Expr, result: &Identifiability, others: &[Expr]) -> SpecialValues {
+    let arena = &plant.arena;
+    let is_excluded = |constant: Expr| {
+        let there = on_boundary(plant, domain, &[wall, constant]);
+        others.iter().any(|other| zero::decide(arena, *other, &there).is_zero())
+    };
+    let square = |expr: Expr| arena.mul(expr, expr);
+    let both = |constant: Expr| arena.add(square(wall), square(constant));
+    let constants =
+        result.constants.iter().map(|constant| arena.dividers(&[*constant]).first().copied().unwrap_or(*constant));
+    let is_complete = result.trajectories.as_ref().is_none_or(|all| all.parameters);
+    SpecialValues {
+        nonzero: constants.filter(|constant| !is_excluded(*constant)).map(both).collect(),
+        complete: is_complete && result.positive.is_empty(),
+    }
 }
 
 /// The cells of the parameters: the signs of those of their functions that occur in the rows on a cell of the domain.

@@ -53,7 +53,7 @@ pub(super) fn of_cells(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>], u
         special.complete &= boundaries.complete;
         let mut harmless = 0;
         for boundary in boundaries.nonzero {
-            let there = |domain: &Domain| on_boundary(plant, domain, boundary);
+            let there = |domain: &Domain| on_boundary(plant, domain, &[boundary]);
             let is_left = |cell: &&CellRows<'_>| {
                 let sides: Vec<Expr> = cell.cell.sides.iter().map(|(divider, _)| *divider).collect();
                 there(&cell.cell.domain).points(&plant.arena, &sides).next().is_some()
@@ -71,12 +71,12 @@ pub(super) fn of_cells(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>], u
     found().unwrap_or_else(|_| SpecialValues::none(false))
 }
 
-/// A domain at values of the parameters at which a combination of them is zero.
-pub(super) fn on_boundary(plant: &Plant, domain: &Domain, boundary: Expr) -> Domain {
+/// A domain at values of the parameters at which combinations of them are zero.
+pub(super) fn on_boundary(plant: &Plant, domain: &Domain, boundaries: &[Expr]) -> Domain {
     let arena = &plant.arena;
-    let equations = domain.manifold.equations().iter().copied().chain([boundary]).collect();
+    let equations = domain.manifold.equations().iter().chain(boundaries).copied().collect();
     let mut there = domain.clone();
-    for parameter in arena.symbols_of(&[boundary]) {
+    for parameter in arena.symbols_of(boundaries) {
         there.fixed.remove(&parameter);
     }
     there.manifold = Manifold::new(arena, &there.facts, equations, plant.elimination_order());

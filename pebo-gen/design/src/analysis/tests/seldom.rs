@@ -268,6 +268,28 @@ fn a_factor_that_an_assumption_excludes_is_none() {
 
 /// With w = 2 nothing shows p, on neither side of which the sign of `w - 2` is.
 #[test]
+fn parameters_that_vanish_together_in_absolute_values_are_excluded() {
+    let judged = |parameters: &str, factor: &str| {
+        let lines = format!(
+            "parameters: {{{parameters}}}\nx: [c, d]\ny: [q]\nu: [v]\nf_x: {{c: \"v - ({factor})*d\", d: 0}}\n\
+             f_y: {{q: c}}\nphi: [c, d]"
+        );
+        let (plant, derivation) = derive(&lines);
+        let listed = derivation.conditions.iter().map(|(expr, _)| plant.arena.print(*expr)).collect::<Vec<_>>();
+        (derivation.outcome, listed.join(", "))
+    };
+    let equal = judged("k: 2, m: 2, l: 2", "sqrt((k - m)^2) + abs(m - l)");
+    assert_eq!(equal, (Outcome::Rejected, String::new()));
+    for (parameters, factor, condition) in [
+        ("k: null, m: null", "abs(k) + abs(m)", "k^2 + m^2"),
+        ("k: null, m: null", "max(abs(k), abs(m))", "k^2 + m^2"),
+        ("k: 1, m: 2", "abs(k - m) + abs(k - 3)", "(m - 3)^2 + (k - m)^2"),
+    ] {
+        assert_eq!(judged(parameters, factor), (Outcome::Accepted, condition.to_owned()), "{factor}");
+    }
+}
+
+#[test]
 fn values_between_the_signs_of_a_parameter_are_conditions() {
     let of = |rate: &str| {
         let lines = "parameters: {w: 3}\nx: [p, s]\ny: [q]\nu: [v]\nf_x: {p: 0, s: 0}\nphi: [p, s]";

@@ -29,11 +29,25 @@ impl<'a> List<'a> {
         Self { problem, known, found: Vec::new(), is_complete: true }
     }
 
-    /// Adds a family that hides unknowns, unless a statement holds it.
+    /// Adds a family that hides unknowns, unless a statement holds it; and the trajectories in it that hide more.
     pub(super) fn add(&mut self, family: &Family) {
         if !family.observed.is_full() && !self.covers(family) {
             let Set { domain, condition } = &family.set;
             self.state(self.problem.blind(condition.clone(), &family.observed), domain.clone());
+            self.refine(family);
+        }
+    }
+
+    /// Adds the trajectories of a family that hide more than it does, for a list that is complete so far.
+    pub(super) fn refine(&mut self, family: &Family) {
+        if !self.is_complete {
+            return;
+        }
+        let zero_set = self.problem.zero_set(&family.set.domain, &family.observed).unwrap_or_default();
+        self.is_complete &= zero_set.all;
+        let held = self.problem.held(&family.set.condition.still);
+        for zero in zero_set.zeros.into_iter().chain(zero_set.constants) {
+            self.is_complete &= self.add_zero(&family.set, zero, &held).unwrap_or(false);
         }
     }
 
@@ -85,7 +99,13 @@ impl<'a> List<'a> {
     pub(in crate::analysis::identifiability) fn leave_open(&mut self, set: &Set, zero: Option<Expr>) {
         let mut condition = set.condition.clone();
         condition.zeros.extend(zero);
-        if self.known.iter().any(|blind| !blind.is_decided() && blind.condition.zeros == condition.zeros) {
+        let is_known = |blind: &BlindTrajectory| !blind.is_decided() && blind.condition.zeros == condition.zeros;
+        if self.known.iter().any(is_known) {
+            return;
+        }
+        if self.found.iter().any(|(blind, _)| blind.is_decided() && blind.condition == condition) {
+            // What is decided of all trajectories there is open for some of them.
+            self.is_complete = false;
             return;
         }
         self.state(BlindTrajectory::undecided(condition), set.domain.clone());

@@ -6,21 +6,42 @@ use std::collections::BTreeSet;
 use crate::analysis::design::Still;
 use crate::analysis::identifiability::flow::{Flow, only_signal, varies, without_psi};
 use crate::analysis::identifiability::singular::{Volume, ZeroSet};
+use pebo_cas::linear::rank::proved_rank;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::family::Family;
-use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation};
+use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation, free_columns};
 
 impl ObservabilityProblem<'_> {
     pub(super) fn parameters(&self) -> BTreeSet<Symbol> {
         self.plant.parameters.iter().map(|parameter| parameter.symbol).collect()
     }
 
-    /// The zeros of the determinant of rows of full rank on a domain.
+    /// The zeros on a domain at which observations have a lower rank: those of the determinant of the rows without the
+    /// columns that follow from the others.
     pub(super) fn zero_set(&self, domain: &Domain, observed: &Observation) -> Result<ZeroSet, Obstacle> {
         self.check_size(&observed.stack)?;
-        Volume::of(&self.plant.arena, domain, &observed.stack)?.zero_set(self.plant, domain)
+        let arena = &self.plant.arena;
+        let free = free_columns(arena, &observed.hidden, self.unknowns());
+        let columns: Vec<usize> = (0..self.unknowns()).filter(|column| !free.contains(&Some(*column))).collect();
+        let rows = observed.stack.iter().map(|row| columns.iter().map(|column| row[*column]).collect::<Vec<Expr>>());
+        let rows: Vec<Vec<Expr>> = rows.filter(|row| row.iter().any(|entry| !arena.is_zero(*entry))).collect();
+        if columns.is_empty() {
+            return Ok(ZeroSet { all: true, ..ZeroSet::default() });
+        }
+        let zero_set = |rows: &[Vec<Expr>]| Volume::of(arena, domain, rows)?.zero_set(self.plant, domain);
+        // The first rows are the shortest: where they suffice everywhere, the others say nothing.
+        let mut first: Vec<Vec<Expr>> = Vec::new();
+        for row in rows.iter().filter(|_| rows.len() > columns.len()) {
+            let longer = [first.as_slice(), std::slice::from_ref(row)].concat();
+            if longer.len() <= columns.len() && proved_rank(arena, domain, &longer, columns.len()) == longer.len() {
+                first = longer;
+            }
+        }
+        let is_square = first.len() == columns.len();
+        let of_first = is_square.then(|| zero_set(&first)).and_then(Result::ok).filter(ZeroSet::are_none);
+        of_first.map_or_else(|| zero_set(&rows), Ok)
     }
 
     /// Tests whether a formula holds inputs, and no other signals.

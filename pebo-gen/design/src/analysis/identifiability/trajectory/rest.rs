@@ -46,6 +46,9 @@ impl ObservabilityProblem<'_> {
             if let Some(family) = families.iter().find(|family| !list.covers(family)) {
                 let set = if families.len() == 1 { &family.set } else { &whole };
                 list.state(self.blind(set.condition.clone(), &family.observed), set.domain.clone());
+                for family in &families {
+                    list.refine(family);
+                }
             }
             return false;
         }

@@ -3,8 +3,9 @@
 use crate::analysis::design::{BlindTrajectory, Still, Trajectories, TrajectoryCondition};
 use crate::analysis::identifiability::flow::varies;
 use crate::plant::Plant;
+use crate::source::{counted, listed};
 use pebo_cas::domain::cells::Side;
-use pebo_cas::{Expr, Node};
+use pebo_cas::{Expr, Node, Symbol};
 
 impl Trajectories {
     /// Tests whether there are cells of the domain in which not all unknowns are identifiable.
@@ -79,6 +80,13 @@ impl BlindTrajectory {
         (*still == Still::Nothing && zeros.is_empty()).then_some(sides)
     }
 
+    /// The identifiable combinations of the unknowns; and those whose factors depend on unmeasured states: each stands
+    /// for a function that changes as it does.
+    pub fn combinations(&self, plant: &Plant) -> (Vec<Expr>, Vec<Expr>) {
+        let hidden = plant.hidden();
+        self.identifiable.iter().partition(|combination| !plant.arena.depends_on(**combination, &hidden))
+    }
+
     fn is_at_rest(&self) -> bool {
         self.condition.still == Still::Plant
     }
@@ -88,8 +96,15 @@ impl BlindTrajectory {
         if !self.is_decided() {
             return format!("while {condition}, it was not decided what is identified");
         }
-        let identifiable: Vec<String> =
-            self.identifiable.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        let (known, of_states) = self.combinations(plant);
+        let mut identifiable: Vec<String> = known.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        if !of_states.is_empty() {
+            let is_unknown = |symbol: &Symbol| !plant.declares(*symbol) && !plant.is_of_extension(*symbol);
+            let unknowns = plant.arena.symbols_of(&of_states).into_iter().filter(is_unknown);
+            let unknowns: Vec<String> = unknowns.map(|symbol| plant.arena.name(symbol)).collect();
+            let count = counted(of_states.len(), "function");
+            identifiable.push(format!("{count} of {}", listed(unknowns.iter().map(String::as_str))));
+        }
         let identifiable =
             if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
         format!("while {condition}, {identifiable} is identified")
