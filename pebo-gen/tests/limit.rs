@@ -92,7 +92,7 @@ fn a_budget_never_makes_a_true_claim_false() {
         std::fs::read_to_string(path).expect("a shipped model")
     });
     for text in &models {
-        let mut accepted = false;
+        let (mut accepted, mut proved) = (false, 0);
         for power in 0..24 {
             let outcome = derived(text, Budget::of_seconds(2e-8 * f64::from(1 << power)));
             let reached = phase(&outcome);
@@ -111,6 +111,9 @@ fn a_budget_never_makes_a_true_claim_false() {
             assert_eq!(derivation.outcome == Outcome::Accepted, reached.is_none(), "{verdicts:?} with {reached:?}");
             assert!(!accepted || reached.is_none(), "accepted with fewer steps");
             accepted = reached.is_none();
+            let count = verdicts.iter().filter(|verdict| **verdict == Verdict::Proved).count();
+            assert!(count >= proved, "{verdicts:?} with {reached:?}: fewer than with fewer steps");
+            proved = count;
         }
         assert!(accepted);
     }

@@ -56,7 +56,9 @@ impl Derivation {
         found.extend(
             unmet.into_iter().filter_map(|(code, what, condition)| Some(without_value(plant, code, what, condition?))),
         );
-        if !is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref()) {
+        // Without a budget no point is looked for: that takes nothing back.
+        let is_found = || is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref());
+        if !plant.arena.budget().is_exhausted() && !is_found() {
             found.push(nowhere(plant));
             cascade.doubt();
             left_inverse.doubt();
