@@ -93,7 +93,7 @@ pub(super) const NON_SMOOTH: &[Row] = &[
         "a root within a root",
         "x: [p]\ny: [q, s]\nu: [v]\nassume: [q != 0]\nf_x: {p: 0}\n\
          f_y: {q: v*q, s: p*(sqrt(q^2 + 1 - 2*sqrt(q^2)) - sqrt(q^2) + 1)}\nphi: [p]",
-        Undecided(Code::IdentifiabilityUndecided),
+        Accepted("dynamic linear excitation"),
     ),
     (
         "the sine of half an angle as a root",

@@ -10,10 +10,10 @@ use pebo_cas::{Domain, Expr, Symbol};
 use super::excitation;
 use super::flow::{Flow, effective, without_psi};
 use super::never::never;
-use super::open;
 use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
 use super::singular::{Volume, ZeroSet};
 use super::trajectory;
+use super::undecided::open;
 use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, Regression, Verdict};
 use crate::analysis::left_inverse::checking::at_phi;
 

@@ -20,22 +20,22 @@ mod problem;
 mod regimes;
 mod singular;
 mod special;
+pub(in crate::analysis) mod undecided;
 
 use std::collections::BTreeSet;
 
 use crate::plant::Plant;
-use crate::source::{Code, Diagnostic};
+use crate::source::Diagnostic;
 use pebo_cas::domain::reducible::reducible;
 use pebo_cas::linear::rank::full_rank_throughout;
-use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use self::components::on_components;
 use self::divided::Formulas;
 use self::flow::{Flow, effective, without_psi};
 use self::problem::ObservabilityProblem;
+use self::undecided::{falls_apart, open};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
-use super::left_inverse::checking::at_phi;
 
 /// Decides how the unknowns are identified.
 pub(super) fn prove(
@@ -150,42 +150,4 @@ fn depends_on_states(plant: &Plant, formulas: &Formulas, cascade: &Cascade) -> b
         held.extend(rates.map(|rate| rate.expr));
     }
     !arena.symbols_of(&held).is_disjoint(&plant.hidden())
-}
-
-/// A domain of several components, on one of which a plant may remain.
-fn falls_apart(plant: &Plant, equation: Expr) -> Diagnostic {
-    let zero = plant.arena.print(equation);
-    Diagnostic::error(
-        Code::IdentifiabilityUndecided,
-        plant.identities.first().map_or_else(|| at_phi(plant), |identity| identity.span),
-        "the identities hold on several components of the domain, and a rank at a point of one says nothing of the others",
-    )
-    .label(format!("`{zero} = 0` holds in several ways"))
-    .help("write the factor that is zero under `identities`, or exclude the others under `assume`")
-}
-
-fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnostic>) -> Claim<Identifiability> {
-    let lacks_values = plant.parameters.iter().any(|parameter| parameter.value.is_none());
-    let values = if lacks_values { "give the parameters values, or " } else { "" };
-    found.push(
-        Diagnostic::error(
-            Code::IdentifiabilityUndecided,
-            at_phi(plant),
-            "it could not be decided whether the unknowns can be identified",
-        )
-        .note(format!("obstacle: {obstacle}"))
-        .help(format!("{values}state signs under `assume`")),
-    );
-    Claim { verdict: Verdict::Undecided, result: None }
-}
-
-/// The regression leaves unknowns unseen, but there are equations that it could not use.
-pub(super) fn not_all_used(plant: &Plant) -> Diagnostic {
-    Diagnostic::error(
-        Code::IdentifiabilityUndecided,
-        at_phi(plant),
-        "it could not be decided whether the unknowns can be identified",
-    )
-    .note("this regression does not identify all unknowns, but it leaves outputs or identities of the plant unused")
-    .help("measure another output, or write what relates phi to the outputs under `identities`")
 }

@@ -28,7 +28,7 @@ mod trial;
 use std::cell::OnceCell;
 
 use super::design::{Claim, Identifiability, Regression, Verdict};
-use super::identifiability::not_all_used;
+use super::identifiability::undecided::not_all_used;
 use super::limited::limited;
 use crate::source::{Code, Diagnostic};
 use build::Obstruction;
