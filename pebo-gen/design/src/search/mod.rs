@@ -188,6 +188,9 @@ const MOST_PRODUCTS: usize = 100;
 /// The degree of polynomials in the outputs up to which they are tried beside constant combinations of the states.
 const MOST_SHIFTED: usize = 5;
 
+/// The share of the remaining budget for transforms with a plain cascade where generalised ones are tried after them.
+const FOR_PLAIN: u64 = 2;
+
 /// The share of the remaining budget for a transform with less noise than one that is accepted.
 const FOR_LESS_NOISE: u64 = 4;
 
@@ -232,8 +235,10 @@ impl<'a> Attempts<'a> {
 
     /// Tries the forms of the class, or of both.
     fn run(&mut self, class: Option<Class>) {
+        // Forms of one class leave time for those of the other.
+        let of_plain = if class.is_none() { FOR_PLAIN } else { 1 };
         if class != Some(Class::Gpebo) {
-            self.plain();
+            self.problem.arena.budget().share(of_plain, || self.plain());
         }
         let share = if self.is_over() { FOR_LESS_NOISE } else { 1 };
         self.class = Class::Gpebo;
