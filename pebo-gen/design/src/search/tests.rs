@@ -256,7 +256,7 @@ fn a_state_whose_rate_no_transform_covers_is_an_unmeasured_signal() {
 
 #[test]
 fn the_sensor_that_is_lacking_is_named() {
-    // Two loads on one axis: only their sum moves it.
+    // The output's rate holds the exponential of w, and no rate is affine in what it needs.
     let lines = "x: [a, w, b]\ny: [q]\nu: [v]\nf_x: {a: b*sin(w), w: v - a*exp(w), b: 0}\nf_y: {q: exp(w)}";
     let declared = solve(&plant(lines), None).declared;
     let lines: Vec<String> = declared.iter().map(|(found, lacking)| lacking.lines(&found.plant)).collect();

@@ -266,9 +266,9 @@ codes! {
          a factor that is never zero."
     TransformNotFound "transform-not-found" "no transform was found"
         "The model has no phi, and the search found none whose claims are all proved. The notes say what came nearest and \
-         why it was refused: a transform of some states, or one that would be accepted with the signs of states assumed. \
-         `pebo-gen solve MODEL` lists the candidates and what was tried. Measure another signal, assume the signs of what is \
-         positive, or write a phi of your own."
+         why it was refused: a transform of some states, or one that would be accepted with the signs of states assumed, or \
+         with another state measured. `pebo-gen solve MODEL` lists the candidates and what was tried. Measure another signal, \
+         assume the signs of what is positive, or write a phi of your own."
         => "Section 2.2, Assumption 1"
     CascadeRefuted "cascade-refuted" "the rate of phi depends on unmeasured states"
         "Claim C1: along the plant, the rate of phi must be a function of outputs and inputs alone, or for the \
