@@ -45,7 +45,11 @@ impl Domain {
                     || (!sampled.positive && field.signs().is_positive(&fraction.opposite())?)),
             }
         };
-        let divides = || relation == Relation::NonZero && self.divides(arena, expr).unwrap_or(false);
+        let divides = || {
+            relation != Relation::NonNegative
+                && self.divides(arena, expr).unwrap_or(false)
+                && (relation == Relation::NonZero || signed && self.implies(arena, expr, Relation::NonNegative))
+        };
         (signed && shown(Field::over(arena, &self.facts, &[expr])).unwrap_or(false))
             || (signed && !self.manifold.is_empty() && shown(Field::on(arena, self, &[expr])).unwrap_or(false))
             || divides()
@@ -56,11 +60,22 @@ impl Domain {
                     || self.implies_by_values(arena, expr, relation)))
     }
 
-    /// True if the expression compares so with the values that the equations give of symbols in it: `1 - y^2` is not
-    /// negative where `y = sin(q)`, though the normal form keeps y, which results may hold, and not q.
+    /// True if the expression compares so with the values that the equations give of symbols in it and in the facts:
+    /// `1 - y^2` is not negative where `y = sin(q)`, though the normal form keeps y, which results may hold, and not q;
+    /// `a^2 + b^2` is positive where `r > 0` and `r = sqrt(a^2 + b^2)`.
     fn implies_by_values(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
-        let by_values = arena.substitute(expr, &self.manifold.given_values(arena));
-        by_values != expr && self.without_equations().implies(arena, by_values, relation)
+        let values = self.manifold.given_values(arena);
+        let by_values = |expr: Expr| arena.substitute(expr, &values);
+        let facts = self.facts.iter().map(|(fact, relation)| (fact, by_values(fact), relation));
+        let new: Vec<_> = facts.filter(|(fact, by_values, _)| fact != by_values).collect();
+        if new.is_empty() && by_values(expr) == expr {
+            return false;
+        }
+        let mut domain = self.without_equations();
+        for (_, fact, relation) in new {
+            domain.facts.assume(fact, relation);
+        }
+        domain.implies(arena, by_values(expr), relation)
     }
 
     /// True if the expression compares so in angles of its own for the sums of which it takes sines and cosines:
@@ -304,6 +319,15 @@ mod tests {
         assert!(domain.implies(&arena, leg(5), Relation::Positive));
         assert!(!domain.implies(&arena, leg(4), Relation::Positive));
         assert!(!domain.implies(&arena, leg(3), Relation::NonNegative));
+        // A bound of the measured value is one of the formula.
+        let [a, b, r] = ["a", "b", "r"].map(|name| arena.variable(name));
+        let square = arena.add(arena.mul(a, a), arena.mul(b, b));
+        let groups = vec![arena.symbols_of(&[a, b]), arena.symbols_of(&[r]), BTreeSet::new()];
+        let manifold = Manifold::new(&arena, &Facts::new(), vec![arena.sub(r, arena.sqrt(square))], groups);
+        let mut domain = Domain { manifold, ..Domain::default() };
+        assert!(!domain.implies(&arena, square, Relation::Positive));
+        domain.facts.assume(r, Relation::Positive);
+        assert!(domain.implies(&arena, square, Relation::Positive));
     }
 
     #[test]
