@@ -119,6 +119,25 @@ fn a_budget_never_makes_a_true_claim_false() {
     }
 }
 
+/// The identifiability of a target that is seen by its bearing alone takes long, and the other claims do not.
+#[test]
+fn claims_before_the_one_in_which_the_budget_ends_remain_proved() {
+    let path = format!("{}/../tests/cases/plants/bearing_only.yaml", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("a plant");
+    let mut times = 0;
+    for power in 8..24 {
+        let outcome = derived(&text, Budget::of_seconds(2e-8 * f64::from(1 << power)));
+        if phase(&outcome).as_deref() != Some("identifiability") {
+            continue;
+        }
+        times += 1;
+        let derivation = outcome.expect("a plant").derivation;
+        let before = [derivation.cascade.verdict, derivation.left_inverse.verdict, derivation.regression.verdict];
+        assert_eq!(before, [Verdict::Proved; 3], "of {power}");
+    }
+    assert!(times > 0, "the budget never ended there");
+}
+
 #[test]
 fn a_watch_ends_it_too() {
     let looks = std::rc::Rc::new(Cell::new(0));
