@@ -72,7 +72,7 @@ impl OpenCell {
             manifold: manifold(&[self.equations.as_slice(), &self.walls].concat()),
             ..self.cell.domain.clone()
         };
-        if self.cell.sides.iter().any(|side| there.excludes(arena, *side)) {
+        if self.cell.sides.iter().any(|side| there.excludes(arena, *side)) || there.contradicts_its_facts(arena) {
             return Ok(Finer::Cells(Vec::new()));
         }
         // An equation that is solved for a symbol has one branch, however many its value has.
@@ -136,6 +136,16 @@ impl Domain {
     /// True if no point has this side.
     fn excludes(&self, arena: &Arena, (divider, side): (Expr, Side)) -> bool {
         self.implies(arena, arena.neg(side.positive(arena, divider)), Relation::NonNegative)
+    }
+
+    /// True if an expression that is assumed not to be zero is, where the equations give its symbols values.
+    fn contradicts_its_facts(&self, arena: &Arena) -> bool {
+        let determined = self.manifold.determined();
+        let mut assumed = self.facts.iter().filter(|(_, relation)| *relation != Relation::NonNegative);
+        assumed.any(|(fact, _)| {
+            let there = arena.substitute(fact, &determined);
+            there != fact && decide(arena, there, &self.without_equations()).is_zero()
+        })
     }
 
     /// True if the expression is positive, negative or zero throughout.

@@ -72,11 +72,22 @@ pub(super) fn factors(arena: &Arena, domain: &Domain, equation: Expr) -> Result<
             found.push(parts);
             continue;
         }
-        let roots = factor.variables().iter().find_map(|variable| two_roots(&field, &factor, *variable).transpose());
-        if let Some(roots) = roots.transpose()? {
+        let (mut factors, mut is_hidden) = (None, false);
+        for variable in factor.variables() {
+            match two_roots(&field, domain, &factor, *variable)? {
+                Some(TwoRoots::Factors(two)) => {
+                    factors = Some(two);
+                    break;
+                }
+                Some(TwoRoots::Unknown) => is_hidden = true,
+                None => {}
+            }
+        }
+        if let Some(factors) = factors {
             is_divided = true;
-            found.extend(roots.into_iter().filter(may_vanish).map(|root| vec![root]));
+            found.extend(factors.into_iter().filter(may_vanish).map(|factor| vec![factor]));
         } else {
+            is_open |= is_hidden;
             // It may have as many roots as its degree, or factors that no rule finds.
             is_open |= match factor.variables() {
                 [variable] => factor.degree(*variable) > 2,
@@ -109,9 +120,17 @@ fn squares(field: &Field<'_>, factor: &Poly) -> Option<Vec<Expr>> {
     Some(factor.terms().map(|(monomial, _)| root(&monomial)).collect())
 }
 
+/// The factors of a polynomial that is quadratic in a power of a variable.
+enum TwoRoots {
+    /// They vanish nowhere else.
+    Factors([Expr; 2]),
+    /// There are two, which were not found.
+    Unknown,
+}
+
 /// The two factors of a polynomial that is quadratic in a power of a variable, as expressions: they exist if the
 /// discriminant is a positive number times a square.
-fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[Expr; 2]>, Obstacle> {
+fn two_roots(field: &Field<'_>, domain: &Domain, factor: &Poly, variable: u32) -> Result<Option<TwoRoots>, Obstacle> {
     let half = factor.degree(variable) / 2;
     let coefficients = factor.coefficients_in(variable);
     if half == 0 || coefficients.iter().any(|(power, _)| ![0, half, 2 * half].contains(power)) {
@@ -140,15 +159,43 @@ fn two_roots(field: &Field<'_>, factor: &Poly, variable: u32) -> Result<Option<[
     let root = arena.product(root.collect::<Result<Vec<Expr>, Obstacle>>()?);
     let scale = arena.sqrt(arena.div(square, arena.mul(root, root)));
     let root = arena.mul(scale, root);
-    // 2 a v^half + b -+ root
+    // (2 a v^half + b - root) (2 a v^half + b + root) is the polynomial times 4 a, which may vanish elsewhere.
     let unknown = arena.power(field.kernel(variable), &i64::from(half).into());
-    let middle = arena.add(arena.mul(arena.scale(field.show(&leading), &2.into()), unknown), field.show(&linear));
-    Ok(Some([arena.sub(middle, root), arena.add(middle, root)]))
+    let leading = field.show(&leading);
+    let middle = arena.add(arena.mul(arena.scale(leading, &2.into()), unknown), field.show(&linear));
+    let factors = [arena.sub(middle, root), arena.add(middle, root)];
+    if domain.grants(arena, (leading, Relation::NonZero)) {
+        return Ok(Some(TwoRoots::Factors(factors)));
+    }
+    let whole = field.show(&field.of_polynomial(factor)?);
+    let primitive = without_content(arena, domain, factors, field.kernel(variable))?;
+    let field = Field::over(arena, &domain.facts, &[primitive.as_slice(), &[whole]].concat())?;
+    let product = field.mul(&field.fraction(primitive[0])?, &field.fraction(primitive[1])?)?;
+    let is_whole = field.div(&product, &field.fraction(whole)?)?.to_constant().is_some();
+    Ok(Some(if is_whole { TwoRoots::Factors(primitive) } else { TwoRoots::Unknown }))
+}
+
+/// Polynomials without the common factors of their coefficients in a variable.
+fn without_content(
+    arena: &Arena,
+    domain: &Domain,
+    polynomials: [Expr; 2],
+    variable: Expr,
+) -> Result<[Expr; 2], Obstacle> {
+    let field = Field::over(arena, &domain.facts, &[polynomials.as_slice(), &[variable]].concat())?;
+    let own = field.fraction(variable)?;
+    let primitive = |polynomial: Expr| -> Result<Expr, Obstacle> {
+        let numerator = field.fraction(polynomial)?.numerator().clone();
+        let content = numerator.content_in(own.numerator().variables(), field.limit())?;
+        let rest = numerator.div_exact(&content, field.limit())?.unwrap_or(numerator);
+        Ok(field.show(&field.of_polynomial(&rest)?))
+    };
+    Ok([primitive(polynomials[0])?, primitive(polynomials[1])?])
 }
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
+    use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
     use crate::domain::manifold::Manifold;
@@ -193,5 +240,26 @@ mod tests {
         }
         assert!(!apart(&[lines], &[a, b]));
         assert!(!apart(&[arena.sub(square(a), one)], &[a]));
+    }
+
+    /// `2*(a - b*c)^2 - d^2` is a product of two, also as a quadratic in b, whose leading coefficient vanishes with c.
+    #[test]
+    fn factors_vanish_nowhere_else() {
+        let arena = Arena::new();
+        let names = ["a", "b", "c", "d"].map(|name| arena.variable(name));
+        for turn in 0..4 {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|place| names[(place + turn) % 4]);
+            let square = |e| arena.mul(e, e);
+            let difference = arena.sub(a, arena.mul(b, c));
+            let whole = arena.sub(arena.scale(square(difference), &2.into()), square(d));
+            let Ok(Factors::Several(ways)) = factors(&arena, &Domain::default(), whole) else { panic!("two factors") };
+            let ways: Vec<Expr> = ways.concat();
+            assert_eq!(ways.len(), 2);
+            for zero in [b, c] {
+                let at_zero = BTreeMap::from([(arena.as_symbol(zero).unwrap(), arena.zero())]);
+                let vanishes = |way: &Expr| arena.is_zero(arena.substitute(*way, &at_zero));
+                assert!(!ways.iter().any(vanishes), "{}", arena.print(ways[0]));
+            }
+        }
     }
 }
