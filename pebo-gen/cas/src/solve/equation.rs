@@ -13,42 +13,54 @@ pub struct Equation {
     pub value: Expr,
 }
 
-/// `base = value^(1/exponent)`: the positive root unless the base is known to be negative.
-pub(super) fn unpower(
-    arena: &Arena,
-    domain: &Domain,
-    base: Expr,
-    exponent: &Rational,
-    value: Expr,
-) -> Option<Equation> {
-    if exponent.is_one() {
-        return Some(Equation { formula: base, value });
+/// An equation inverted.
+pub(super) struct Inverse {
+    /// The inner equation.
+    pub(super) equation: Equation,
+    /// False if it has another value too: a root or an inverse cosine of the other sign.
+    pub(super) is_unique: bool,
+}
+
+impl Inverse {
+    /// The only one.
+    pub(super) fn unique(equation: Equation) -> Self {
+        Self { equation, is_unique: true }
     }
-    let inverse = exponent.recip()?;
-    if !exponent.is_integer() {
-        return Some(Equation { formula: base, value: arena.power(value, &inverse) });
+}
+
+/// `base = value^(1/exponent)`: the positive root unless the base is known to be negative.
+pub(super) fn unpower(arena: &Arena, domain: &Domain, base: Expr, exponent: &Rational, value: Expr) -> Option<Inverse> {
+    let unique = |value| Some(Inverse::unique(Equation { formula: base, value }));
+    if exponent.is_one() {
+        return unique(value);
+    }
+    let root = arena.power(value, &exponent.recip()?);
+    let is_even = exponent.is_integer() && exponent.numerator().trailing_zeros() > 0;
+    if !is_even {
+        return unique(root);
     }
     let field = Field::over(arena, &domain.facts, &[base]).ok()?;
     let fraction = field.fraction(base).ok()?;
-    let root = arena.power(value, &inverse);
-    let even = exponent.numerator().trailing_zeros() > 0;
-    let negative = even && field.signs().is_positive(&fraction.opposite()).ok()?;
-    Some(Equation { formula: base, value: if negative { arena.neg(root) } else { root } })
+    if field.signs().is_positive(&fraction.opposite()).ok()? {
+        return unique(arena.neg(root));
+    }
+    let is_unique = field.signs().is_not_negative(&fraction).ok()?;
+    Some(Inverse { equation: Equation { formula: base, value: root }, is_unique })
 }
 
 /// `inside = inverse(value)`: of an even function the negative of that where the argument is known to be negative.
-pub(super) fn uncall(
-    arena: &Arena,
-    domain: &Domain,
-    function: Function,
-    inside: Expr,
-    value: Expr,
-) -> Option<Equation> {
+pub(super) fn uncall(arena: &Arena, domain: &Domain, function: Function, inside: Expr, value: Expr) -> Option<Inverse> {
     let row = function.row();
     let principal = arena.call(row.inverse?, &[value]);
-    let is_negative =
-        row.parity == Some(Parity::Even) && domain.implies(arena, arena.neg(inside), Relation::NonNegative);
-    Some(Equation { formula: inside, value: if is_negative { arena.neg(principal) } else { principal } })
+    let of = |value| Equation { formula: inside, value };
+    if row.parity != Some(Parity::Even) {
+        return Some(Inverse::unique(of(principal)));
+    }
+    if domain.implies(arena, arena.neg(inside), Relation::NonNegative) {
+        return Some(Inverse::unique(of(arena.neg(principal))));
+    }
+    let is_unique = domain.implies(arena, inside, Relation::NonNegative);
+    Some(Inverse { equation: of(principal), is_unique })
 }
 
 /// The angle with this sine and cosine, a common positive denominator left out.

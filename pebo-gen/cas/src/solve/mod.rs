@@ -27,7 +27,7 @@ use crate::graph::function::Function;
 use crate::number::interval::Precision;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Domain, Rational};
-use equation::{angle_of, uncall, unpower};
+use equation::{Inverse, angle_of, uncall, unpower};
 
 pub use cleared::cleared;
 pub use equation::Equation;
@@ -42,7 +42,8 @@ pub fn solve(
     let mut alone: BTreeMap<Symbol, Expr> = BTreeMap::new();
     let turned_out = |equation: &Equation| turned_out(arena, domain, *equation, unknowns);
     let mut turned: Vec<Equation> = equations.iter().map(turned_out).collect();
-    let apart: Vec<Equation> = monomials::apart(arena, domain, &turned).iter().map(turned_out).collect();
+    let apart = monomials::apart(arena, domain, &turned);
+    let apart: Vec<Equation> = apart.iter().map(|inverse| turned_out(&inverse.equation)).collect();
     turned.extend(apart);
     for Equation { formula, value } in &turned {
         if let Some(symbol) = arena.as_symbol(*formula) {
@@ -182,24 +183,32 @@ fn eliminated(
             break;
         }
         let known = eliminate(arena, domain, &differences, &open, reading)?;
+        // Of a product the sign of a factor is known, of its square it is not.
+        let (unique, others): (Vec<_>, Vec<_>) =
+            invert(arena, domain, &known).into_iter().partition(|inverse| inverse.is_unique);
         let mut progress = false;
-        let mut inner = Vec::new();
-        for inverted in invert(arena, domain, &known) {
-            match arena.as_symbol(inverted.formula) {
-                Some(symbol) if open.contains(&symbol) => {
-                    progress = true;
-                    found.entry(symbol).or_insert(inverted.value);
+        for inverses in [unique, others].into_iter().filter(|inverses| !inverses.is_empty()) {
+            let before = differences.len();
+            for Inverse { equation: Equation { formula, value }, .. } in inverses {
+                match arena.as_symbol(formula) {
+                    Some(symbol) if open.contains(&symbol) => {
+                        progress = true;
+                        found.entry(symbol).or_insert(value);
+                    }
+                    _ => {
+                        let difference = arena.sub(formula, value);
+                        if !differences.contains(&difference) {
+                            differences.push(difference);
+                        }
+                    }
                 }
-                _ => inner.push(arena.sub(inverted.formula, inverted.value)),
+            }
+            progress |= differences.len() > before;
+            if progress {
+                break;
             }
         }
-        let before = differences.len();
-        for difference in inner {
-            if !differences.contains(&difference) {
-                differences.push(difference);
-            }
-        }
-        if !progress && differences.len() == before {
+        if !progress {
             break;
         }
         differences = arena.substitute_all(&differences, &found);
@@ -231,11 +240,11 @@ fn turned_once(arena: &Arena, domain: &Domain, equation: Equation, open: &BTreeS
             let (inner, rest): (Vec<_>, Vec<_>) = product.factors.iter().cloned().partition(|(b, _)| alone(b));
             let [(base, exponent)] = inner.as_slice() else { return None };
             let rest = arena.multiply(&product.coefficient, rest);
-            unpower(arena, domain, *base, exponent, arena.div(value, rest))
+            unpower(arena, domain, *base, exponent, arena.div(value, rest)).map(|inverse| inverse.equation)
         }
         Node::Call(function, arguments) => {
             let [inside] = arguments.as_ref() else { return None };
-            uncall(arena, domain, function, *inside, value)
+            uncall(arena, domain, function, *inside, value).map(|inverse| inverse.equation)
         }
         Node::Symbol(_) | Node::Number(_) | Node::Pi => None,
     }
@@ -296,9 +305,10 @@ fn eliminate(
 
 /// Inverts the outermost function of known kernels; values known without inversion come first: `a` rather than the root
 /// of `a^2`.
-fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
-    let (mut inverted, others): (Vec<Equation>, Vec<Equation>) =
+fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Inverse> {
+    let (symbols, others): (Vec<Equation>, Vec<Equation>) =
         known.iter().copied().partition(|equation| arena.as_symbol(equation.formula).is_some());
+    let mut inverted: Vec<Inverse> = symbols.into_iter().map(Inverse::unique).collect();
     for Equation { formula, value } in others {
         let next = match arena.node(formula) {
             Node::Product(product) => match product.factors.as_slice() {
@@ -310,7 +320,10 @@ fn invert(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
                 let alone = || uncall(arena, domain, function, inside, value);
                 match function {
                     Function::Cos => match beside(arena, known, Function::Sin, inside) {
-                        Some(sin) => Some(Equation { formula: inside, value: angle_of(arena, domain, sin, value) }),
+                        Some(sin) => {
+                            let angle = angle_of(arena, domain, sin, value);
+                            Some(Inverse::unique(Equation { formula: inside, value: angle }))
+                        }
                         None => alone(),
                     },
                     // With its cosine known, the angle comes from both.
@@ -445,6 +458,22 @@ mod tests {
         assert_eq!(solved(&arena, &domain, &[power(2), p], p), "z2");
         assert_eq!(solved(&arena, &domain, &[power(3), power(2)], p), "z1^(1/3)");
         assert_eq!(solved(&arena, &domain, &[arena.add(power(3), p), p, power(3)], p), "z2");
+    }
+
+    /// The sign of a factor is that of its product with a positive one; its square has none.
+    #[test]
+    fn a_product_determines_a_sign_before_a_square_does_not() {
+        let arena = Arena::new();
+        let [p, s] = ["p", "s"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(p, Relation::Positive);
+        let squares = [p, s].map(|factor| arena.mul(factor, factor));
+        let formulas = [squares[1], arena.mul(p, s), squares[0]];
+        let equation = |(formula, z): (&Expr, &str)| Equation { formula: *formula, value: arena.variable(z) };
+        let equations: Vec<Equation> = formulas.iter().zip(["z1", "z2", "z3"]).map(equation).collect();
+        let unknowns = [p, s].map(|unknown| arena.as_symbol(unknown).unwrap());
+        let candidates = solve(&arena, &domain, &equations, &unknowns).unwrap();
+        assert_eq!(unknowns.map(|unknown| arena.print(candidates[&unknown][0])), ["sqrt(z3)", "z2/sqrt(z3)"]);
     }
 
     #[test]

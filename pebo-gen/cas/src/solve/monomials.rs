@@ -3,14 +3,14 @@
 //! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle
 //! and the amplitude, from `p*s` and `p*s^2` the quotient of the two.
 
-use super::equation::{Equation, angle_of, unpower};
+use super::equation::{Equation, Inverse, angle_of, unpower};
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 use crate::tower::Field;
 use crate::{Arena, Domain, Node, Rational};
 
 /// The kernels that products determine.
-pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Equation> {
+pub(super) fn apart(arena: &Arena, domain: &Domain, known: &[Equation]) -> Vec<Inverse> {
     let products: Vec<KernelProduct> =
         known.iter().filter_map(|equation| KernelProduct::of(arena, *equation)).collect();
     let mut found = polar(arena, domain, &products);
@@ -35,7 +35,7 @@ impl KernelProduct {
 }
 
 /// Amplitude and angle, if both `m*sin(a)` and `m*cos(a)` and the sign of m are known.
-fn polar(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
+fn polar(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Inverse> {
     let mut found = Vec::new();
     for KernelProduct { factors, value: across } in products {
         for (at, (factor, exponent)) in factors.iter().enumerate() {
@@ -51,7 +51,8 @@ fn polar(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equa
             let (Some(along), Some(positive)) = (along, sign(arena, domain, amplitude)) else { continue };
             let turned = |value| if positive { value } else { arena.neg(value) };
             let [across, along] = [*across, along.value].map(turned);
-            found.push(Equation { formula: argument[0], value: angle_of(arena, domain, across, along) });
+            let angle = angle_of(arena, domain, across, along);
+            found.push(Inverse::unique(Equation { formula: argument[0], value: angle }));
             let length = arena.sqrt(arena.add(arena.mul(across, across), arena.mul(along, along)));
             found.extend(single(arena, domain, amplitude, turned(length)));
         }
@@ -69,18 +70,18 @@ fn sign(arena: &Arena, domain: &Domain, expr: Expr) -> Option<bool> {
 }
 
 /// A power of a kernel turned into the kernel; a product of several is unchanged.
-fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<Equation> {
+fn single(arena: &Arena, domain: &Domain, formula: Expr, value: Expr) -> Option<Inverse> {
     match arena.node(formula) {
         Node::Product(product) => match product.factors.as_slice() {
             [(base, exponent)] => unpower(arena, domain, *base, exponent, value),
-            _ => Some(Equation { formula, value }),
+            _ => Some(Inverse::unique(Equation { formula, value })),
         },
-        _ => Some(Equation { formula, value }),
+        _ => Some(Inverse::unique(Equation { formula, value })),
     }
 }
 
 /// Kernels as products of powers of the values, if the exponents determine them.
-fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Equation> {
+fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> Vec<Inverse> {
     let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
     kernels.sort_unstable();
     kernels.dedup();

@@ -45,7 +45,8 @@ pub(super) fn roots(
         if b.is_zero() { square_roots(arena, &field, &a, &c, degree)? } else { both(arena, &field, &a, &b, &c)? };
     let (base, step) = (field.kernel(*kernel), if b.is_zero() { degree.div_ceil(2) } else { degree / 2 });
     let step = Rational::from(i64::from(step));
-    Ok(powers.into_iter().filter_map(|value| unpower(arena, domain, base, &step, value)).collect())
+    let roots = powers.into_iter().filter_map(|value| unpower(arena, domain, base, &step, value));
+    Ok(roots.map(|inverse| inverse.equation).collect())
 }
 
 /// A polynomial that vanishes with this one, with some square roots over unknowns removed.
