@@ -18,11 +18,13 @@ use crate::{Arena, Domain, Expr, Node, Symbol};
 pub fn cleared(arena: &Arena, domain: &Domain, difference: Expr, unknown: &BTreeSet<Symbol>) -> Vec<Expr> {
     let mut equation = Equation { formula: difference, value: arena.zero() };
     let mut forms = vec![difference];
-    while let Some(inner) = turned_once(arena, domain, equation, unknown) {
+    while let Some(inner) = turned_once(arena, domain, equation, unknown).or_else(|| angle_apart(arena, equation)) {
         equation = inner;
         forms.extend(without_angle(arena, equation));
     }
-    forms.push(arena.sub(equation.formula, equation.value));
+    if without_angle(arena, equation).is_none() {
+        forms.push(arena.sub(equation.formula, equation.value));
+    }
     let mut found = Vec::new();
     for form in forms {
         for above in above_the_line(arena, domain, form, unknown).unwrap_or_default() {
@@ -34,7 +36,20 @@ pub fn cleared(arena: &Arena, domain: &Domain, difference: Expr, unknown: &BTree
     found
 }
 
-/// A known angle or tangent, as a relation of its sides.
+/// The one angle by its sides in a sum, on a side of its own: a bearing is one less the heading of the vehicle.
+fn angle_apart(arena: &Arena, Equation { formula, value }: Equation) -> Option<Equation> {
+    let Node::Sum(sum) = arena.node(formula) else { return None };
+    let is_angle = |term: Expr| {
+        let Node::Call(function, _) = arena.node(term) else { return false };
+        matches!(function, Function::Atan2 | Function::Atan | Function::Asin | Function::Acos)
+    };
+    let (angles, rest): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| is_angle(*term));
+    let [(angle, slope)] = angles.as_slice() else { return None };
+    let rest = arena.combine(&sum.constant, rest);
+    Some(Equation { formula: *angle, value: arena.scale(arena.sub(value, rest), &slope.recip()?) })
+}
+
+/// An angle or tangent, as a relation of its sides.
 fn without_angle(arena: &Arena, Equation { formula, value }: Equation) -> Option<Expr> {
     let Node::Call(function, arguments) = arena.node(formula) else { return None };
     let of = |function, angle| arena.call(function, &[angle]);
@@ -86,6 +101,11 @@ mod tests {
             (norm, "p^2 + s^2 - v^2"),
             (arena.add(p, arena.sqrt(s)), "v^2 - s + p*(p - 2*v)"),
             (arena.call(Function::Atan2, &[p, s]), "s*sin(v) - p*cos(v)"),
+            (
+                arena.sub(arena.call(Function::Atan2, &[p, k]), s),
+                "p*(sin(v)*sin(s) - cos(v)*cos(s)) + k*(sin(v)*cos(s) + cos(v)*sin(s))",
+            ),
+            (arena.sub(call(Function::Asin, p), s), "p - sin(v)*cos(s) - cos(v)*sin(s)"),
             (call(Function::Tan, p), "v*cos(p) - sin(p)"),
             (call(Function::Atan, arena.div(p, k)), "p - k*tan(v)"),
             // The exponential of a sum is not split.
