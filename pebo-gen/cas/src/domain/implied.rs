@@ -18,6 +18,14 @@ struct SampledSigns {
     negative: bool,
 }
 
+impl SampledSigns {
+    /// True if the value of a fraction at these points, and at all others, has one sign and is not zero.
+    fn are_one(&self, field: &Field<'_>, fraction: &Fraction) -> Result<bool, Obstacle> {
+        Ok((!self.negative && field.signs().is_positive(fraction)?)
+            || (!self.positive && field.signs().is_positive(&fraction.opposite())?))
+    }
+}
+
 impl Domain {
     /// True if a domain condition of a formula is granted: it holds of numbers, or the facts prove it.
     pub fn grants(&self, arena: &Arena, condition: (Expr, Relation)) -> bool {
@@ -41,8 +49,7 @@ impl Domain {
             match relation {
                 Relation::Positive => field.signs().is_positive(&fraction),
                 Relation::NonNegative => field.signs().is_not_negative(&fraction),
-                Relation::NonZero => Ok((!sampled.negative && field.signs().is_positive(&fraction)?)
-                    || (!sampled.positive && field.signs().is_positive(&fraction.opposite())?)),
+                Relation::NonZero => sampled.are_one(&field, &fraction),
             }
         };
         let divides = || {
@@ -153,11 +160,8 @@ impl Domain {
         }
         let field = Field::over(arena, &self.facts, &[facts.as_slice(), &[expr]].concat())?;
         let is_signed = |fraction: &Fraction| {
-            Ok::<_, Obstacle>(
-                fraction.to_constant().is_some()
-                    || field.signs().is_positive(fraction)?
-                    || field.signs().is_positive(&fraction.opposite())?,
-            )
+            let sampled = || self.sampled_signs(arena, field.show(fraction));
+            Ok::<_, Obstacle>(fraction.to_constant().is_some() || sampled().are_one(&field, fraction)?)
         };
         let own = field.fraction(expr)?;
         if own.is_zero() {
