@@ -171,6 +171,28 @@ const CASES: &[Case] = &[
         class: Class::Pebo,
         most: 1,
     },
+    Case {
+        from: "heater and load in a vacuum furnace: products of the stored heat, whose cascade is a generalised one",
+        lines: "parameters: [a, b, k, h]\nx: [load]\ny: [heater]\nu: [P]\nassume: [a > 0, b > 0, k > 0, h > 0]\n\
+                f_x: {load: (k*(heater^4 - load^4) - h*load)/b}\nf_y: {heater: (P - k*(heater^4 - load^4))/a}",
+        class: Class::Gpebo,
+        most: 4,
+    },
+    Case {
+        from: "position and heading of a vehicle from the bearings of two landmarks, which it takes from its heading",
+        lines: "parameters: {x1: 20, y1: 5, x2: 5, y2: 20}\nx: [px, py, psi]\ny: [b1, b2]\nu: [v, om]\n\
+                angles: {psi: 2*pi}\nf_x: {px: v*cos(psi), py: v*sin(psi), psi: om}\n\
+                g_y: {b1: \"atan2(y1 - py, x1 - px) - psi\", b2: \"atan2(y2 - py, x2 - px) - psi\"}",
+        class: Class::Gpebo,
+        most: 4,
+    },
+    Case {
+        from: "two reactants and their product: products of two components",
+        lines: "parameters: [k]\nx: [a, b]\ny: [p]\nu: [w]\nassume: [k > 0]\n\
+                f_x: {a: b - a - k*a*b, b: w - b}\nf_y: {p: k*a*b}",
+        class: Class::Gpebo,
+        most: 4,
+    },
 ];
 
 /// A polynomial that no formula shows divides its own rate.

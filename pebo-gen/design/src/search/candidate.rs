@@ -29,6 +29,12 @@ impl Candidate {
         self.derivation.outcome == Outcome::Accepted && self.recovered() == self.plant.x.len()
     }
 
+    /// Tests whether its components are coordinates of the states: the cascade and the left inverse are proved.
+    pub(super) fn has_coordinates(&self) -> bool {
+        let [cascade, inverse] = [self.derivation.cascade.verdict, self.derivation.left_inverse.verdict];
+        cascade == Verdict::Proved && inverse == Verdict::Proved
+    }
+
     /// Tests whether the rates of the outputs are a linear regression for theta itself.
     pub fn is_linear(&self) -> bool {
         self.derivation.regression.result.as_ref().is_some_and(|regression| regression.is_linear(&self.plant))
@@ -38,8 +44,7 @@ impl Candidate {
     /// outputs do not depend on a direction of its unknowns.
     pub fn hides_states(&self) -> bool {
         let is_proved = |verdict| verdict == Verdict::Proved;
-        is_proved(self.derivation.cascade.verdict)
-            && is_proved(self.derivation.left_inverse.verdict)
+        self.has_coordinates()
             && is_proved(self.derivation.regression.verdict)
             && self.derivation.identifiability.verdict == Verdict::Refuted
             && self.plant.phi.len() == self.plant.x.len()

@@ -95,4 +95,6 @@ pub enum Start {
     Constants,
     /// The outputs' rates, with the factors of unknown constants integrated by parts.
     Parts,
+    /// The outputs' rates, in the components of a transform with a generalised cascade.
+    Products,
 }

@@ -34,7 +34,7 @@ pub mod words;
 
 use std::collections::BTreeSet;
 
-use crate::analysis::{Class, Derivation, Verdict};
+use crate::analysis::{Class, Derivation};
 use crate::plant::{Noisier, Plant, TransformOrigin};
 use pebo_cas::Expr;
 use pebo_cas::domain::zero::decide;
@@ -246,6 +246,9 @@ impl<'a> Attempts<'a> {
             self.problem.arena.budget().share(share, || self.generalised());
         }
         self.rest();
+        if class != Some(Class::Pebo) && !self.is_full() {
+            self.of_products();
+        }
     }
 }
 
@@ -387,11 +390,11 @@ impl Attempts<'_> {
             problem.plant.identities.iter().map(|identity| functions::without_roots(problem, identity.expr)).collect();
         let bound = if identities.is_empty() { Vec::new() } else { [identities.as_slice(), &states].concat() };
         let starts = [
+            (Start::Identities, &bound),
+            (Start::IdentitiesAlone, &identities),
             (Start::Outputs, &rates),
             (Start::Both, &both),
             (Start::States, &states),
-            (Start::Identities, &bound),
-            (Start::IdentitiesAlone, &identities),
         ];
         for (start, formulas) in starts.into_iter().filter(|(_, formulas)| !formulas.is_empty()) {
             if self.is_over() {
@@ -480,15 +483,20 @@ impl Attempts<'_> {
         let Some(measured) = closure::constants::measured(problem) else { return };
         let candidates = || attempted(&Problem::of(&measured), Some(Class::Pebo)).candidates;
         let candidates = problem.arena.budget().share(3, candidates);
-        let proved = |candidate: &&Candidate| {
-            let derivation = &candidate.derivation;
-            derivation.cascade.verdict == Verdict::Proved && derivation.left_inverse.verdict == Verdict::Proved
-        };
-        if let Some(candidate) = candidates.iter().find(proved) {
-            let closed = closure::constants::closure(problem, candidate).map(Option::unwrap_or_default);
+        if let Some(candidate) = candidates.iter().find(|candidate| candidate.has_coordinates()) {
+            let closed = closure::coordinates::closure(problem, candidate);
+            let closed = closed.map(Option::unwrap_or_default);
             let closed = closed.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);
         }
+    }
+
+    /// Products of the components of a transform with a generalised cascade in which the outputs' rates are not affine.
+    fn of_products(&mut self) {
+        let is_generalised = |c: &&Candidate| c.derivation.class == Class::Gpebo && c.has_coordinates();
+        let Some(candidate) = self.candidates.iter().find(is_generalised) else { return };
+        let closed = closure::coordinates::closure(self.problem, candidate);
+        self.judge(Form::Closure(Start::Products), 0, closed.map(Option::unwrap_or_default));
     }
 
     fn attempt(&mut self, form: Form, ansatz: impl FnOnce(&Problem<'_>) -> Result<Ansatz, Obstacle>) {

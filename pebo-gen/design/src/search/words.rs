@@ -58,6 +58,7 @@ impl Start {
             Self::Quotients => "the states divided by a polynomial that divides its own rate",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
             Self::Parts => "the outputs' rates, by parts where unknown constants multiply them",
+            Self::Products => "the outputs' rates, as products of components with a generalised cascade",
         }
     }
 }

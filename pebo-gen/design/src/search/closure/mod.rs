@@ -10,6 +10,7 @@
 
 pub(super) mod by_parts;
 pub(super) mod constants;
+pub(super) mod coordinates;
 pub(crate) mod darboux;
 pub(crate) mod observable;
 mod products;
