@@ -197,6 +197,8 @@ mod tests {
         assert_eq!(components(&[product], &[a]).unwrap(), ["b - 1"]);
         assert_eq!(components(&[product], &[a, b]).unwrap(), ["b - 1"]);
         assert_eq!(components(&[product], &[a, arena.sub(b, arena.number(Rational::from(2)))]).unwrap(), [""; 0]);
+        // An assumption on both is not one on either.
+        assert_eq!(components(&[a, b], &[arena.sub(a, b)]).unwrap(), [""; 0]);
         // A product after another equation is solved.
         assert_eq!(components(&[arena.sub(arena.mul(a, c), a), arena.sub(c, b)], &[]).unwrap().len(), 2);
         assert_eq!(components(&[arena.sub(square(a), square(b))], &[]).unwrap().len(), 2);
