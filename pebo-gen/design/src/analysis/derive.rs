@@ -11,7 +11,7 @@ use super::design::{Cascade, Claim, Class, Derivation, Outcome, Regression, Verd
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
 use super::regression::{self, Premises};
-use super::{cascade, identities, left_inverse, permitted};
+use super::{cascade, identities, left_inverse, permitted, turns};
 
 impl Derivation {
     /// Derives the observer of a plant: every claim with its verdict.
@@ -40,6 +40,13 @@ impl Derivation {
             }
             _ => (Claim::skipped(), Claim::skipped()),
         };
+        if let (Some(cascade), Some(regression), Some(inverse)) = (&cascade.result, &regression.result, inverse) {
+            let refused = turns::refused(plant, &domain, (cascade, regression, inverse));
+            if !refused.is_empty() && !plant.arena.budget().is_exhausted() {
+                found.extend(refused);
+                left_inverse.doubt();
+            }
+        }
         let settled = found.len();
         let mut conditions = Conditions::of(plant);
         for constant in identifiability.result.iter().flat_map(|result| &result.constants) {

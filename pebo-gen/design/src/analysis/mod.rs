@@ -34,6 +34,7 @@ mod parameters;
 mod pencil;
 mod permitted;
 mod regression;
+mod turns;
 mod witness;
 mod words;
 

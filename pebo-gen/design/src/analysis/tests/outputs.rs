@@ -71,3 +71,32 @@ fn values_that_are_linear_in_theta_are_so_in_any_order() {
     let (plant, derivation) = derive(plant);
     assert!(derivation.regression.result.expect("proved").is_linear(&plant));
 }
+
+/// Outputs that are angles, of which nobody knows the turn, and the verdict.
+#[test]
+fn the_turn_of_an_output_changes_states_by_periods_alone() {
+    let heading = "x: [psi, o]\ny: [s]\nu: [r]\nf_x: {psi: r - o, o: 0}\ng_y: {s: psi}\nphi: [psi, o]";
+    let torsion = |force: &str| {
+        format!("x: [v]\ny: [q]\nu: [w]\nangles: {{q: 2*pi}}\nf_x: {{v: w - {force}}}\nf_y: {{q: v}}\nphi: [v]")
+    };
+    let arm = |value: &str| {
+        format!("x: [a]\ny: [s]\nu: [w]\nangles: {{s: 2*pi, a: 2*pi}}\nf_x: {{a: w}}\ng_y: {{s: {value}}}\nphi: [a]")
+    };
+    let cases = [
+        (format!("{heading}\nangles: {{s: 2*pi, psi: 2*pi}}"), Outcome::Accepted),
+        (format!("{heading}\nangles: {{psi: 2*pi}}"), Outcome::Accepted),
+        // The state is no angle, or the force is another one after a turn.
+        (format!("{heading}\nangles: {{s: 2*pi}}"), Outcome::Undecided),
+        (torsion("4*q"), Outcome::Undecided),
+        (torsion("4*sin(q/2)"), Outcome::Undecided),
+        (torsion("4*sin(q)"), Outcome::Accepted),
+        // A turn of the output is half a one of the state.
+        (arm("2*a"), Outcome::Undecided),
+        (arm("a"), Outcome::Accepted),
+        (arm("-a"), Outcome::Accepted),
+    ];
+    for (lines, expected) in cases {
+        let (_, derivation) = derive(&lines);
+        assert_eq!(derivation.outcome, expected, "{lines}");
+    }
+}
