@@ -22,6 +22,8 @@ pub struct SearchReport {
     candidates: Vec<CandidateReport>,
     /// The transform that would be accepted with a declaration, if none is accepted as it is.
     assumed: Option<AssumedReport>,
+    /// A direction of the states that no output shows.
+    symmetry: Option<SymmetryReport>,
     bound: Option<BoundReport>,
     /// The bound for transforms affine in x, if it is small.
     bound_affine: Option<BoundReport>,
@@ -41,6 +43,13 @@ struct AssumedReport {
     /// The lines of the model file.
     declare: String,
     phi: Vec<String>,
+}
+
+/// The states that move along a direction, and their speeds.
+#[derive(Clone, Debug, Serialize)]
+struct SymmetryReport {
+    states: Vec<String>,
+    direction: Vec<String>,
 }
 
 /// The largest rank of dphi/dx at a point, among transforms of a class with a plain cascade.
@@ -85,6 +94,10 @@ impl SearchReport {
                 declare: declaration.lines(&candidate.plant).replace('`', ""),
                 phi: candidate.formulas(),
             }),
+            symmetry: search.symmetry.as_ref().map(|symmetry| SymmetryReport {
+                states: symmetry.states.iter().map(|(state, _)| plant.arena.name(*state)).collect(),
+                direction: symmetry.states.iter().map(|(_, speed)| plant.arena.print(*speed)).collect(),
+            }),
             bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),
             bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),
             bound_generalised: search.generalised.as_ref().map(|found| bound(&plant.arena, found)),
@@ -102,6 +115,7 @@ impl SearchReport {
             verdict: pebo_design::search::SearchVerdict::Undecided.word(),
             candidates: Vec::new(),
             assumed: None,
+            symmetry: None,
             bound: None,
             bound_affine: None,
             bound_generalised: None,
@@ -157,6 +171,7 @@ pub fn search_summary(plant: &Plant, search: &Search) -> String {
         text.extend([super::text::summary(&candidate.plant, &candidate.derivation).as_str()]);
     }
     text.extend(search.declared.iter().map(|found| format!("  {}\n", declared(found))));
+    text.extend(search.symmetry.iter().map(|found| format!("  symmetry: {}\n", found.sentence(&plant.arena))));
     for bound in search.bounds() {
         text.extend([format!("  bound: {}\n", bound.sentence(&plant.arena))]);
         text.extend(bound.certificate(&plant.arena).iter().map(|line| format!("  certificate: {line}\n")));

@@ -5,6 +5,7 @@ use pebo_cas::tower::Obstacle;
 use super::bounds::Bound;
 use super::candidate::Candidate;
 use super::declaration::Declaration;
+use super::symmetry::Symmetry;
 
 /// The result of a search.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub struct Search {
     pub verdict: SearchVerdict,
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
+    /// A direction of the states that no output shows, where none is accepted.
+    pub symmetry: Option<Symmetry>,
     /// A transform that would be accepted with a declaration, where none is accepted as it is.
     pub declared: Vec<(Candidate, Declaration)>,
     /// The bound on the rank of dphi/dx for transforms with a plain cascade, where the search computed it: for smooth
@@ -31,7 +34,7 @@ pub struct Search {
 pub enum SearchVerdict {
     /// There is one whose claims are all proved, and which recovers all states.
     Found,
-    /// It is proved that there is none of the classes that the bounds name: no smooth one with a plain cascade, and if
+    /// It is proved that there is none at all, by a symmetry, or none of the classes that the bounds name: no smooth one with a plain cascade, and if
     /// a generalised one would do, none that is affine in x. Other generalised ones were looked for and not found;
     /// where rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions,
     /// the search is undecided instead.

@@ -28,6 +28,7 @@ mod frame;
 mod functions;
 mod partial;
 mod sample;
+mod symmetry;
 #[cfg(all(test, feature = "yaml"))]
 mod tests;
 pub mod words;
@@ -50,6 +51,7 @@ pub use declaration::Declaration;
 pub use found::{Attempt, Form, Search, SearchVerdict, Start};
 pub use frame::{Block, blocks};
 use problem::Problem;
+pub use symmetry::Symmetry;
 pub use words::settles;
 
 /// Searches for a transform of the plant, of one class of cascade or of any.
@@ -103,7 +105,9 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
             && (class.is_some() || generalised().is_some_and(|bound| bound.excludes()))
     };
     let excluded = excluded && again();
-    let verdict = match (found, excluded) {
+    let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
+    let symmetry = if found { None } else { symmetry() };
+    let verdict = match (found, excluded || symmetry.is_some()) {
         (true, _) => SearchVerdict::Found,
         (false, true) => SearchVerdict::None,
         (false, false) => SearchVerdict::Undecided,
@@ -121,7 +125,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     } else {
         without_unseen().or_else(helpful).map_or_else(lacking, |declared| vec![declared])
     };
-    Search { verdict, candidates, declared, bound, affine, generalised, tried }
+    Search { verdict, candidates, symmetry, declared, bound, affine, generalised, tried }
 }
 
 /// The attempts of a class or of any, with their candidates in order of merit.
@@ -193,6 +197,9 @@ const FOR_PLAIN: u64 = 2;
 
 /// The share of the remaining budget for a transform with less noise than one that is accepted.
 const FOR_LESS_NOISE: u64 = 4;
+
+/// The share of the remaining budget for the reason why there is none.
+const FOR_SYMMETRY: u64 = 8;
 
 /// The share of the remaining budget for polynomials with undetermined coefficients.
 const FOR_INVARIANT: u64 = 8;

@@ -9,10 +9,12 @@ use super::closure::observable::observable;
 use super::completion::decision::decided;
 use super::problem::Problem;
 use super::solve;
+use super::symmetry::symmetry;
 use crate::analysis::Class;
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::Source;
+use pebo_cas::{Expr, Symbol};
 
 fn plant(lines: &str) -> Plant {
     let source = Source::new("m.yaml", format!("model: m\n{lines}\n")).expect("a text");
@@ -108,6 +110,40 @@ proptest! {
         let smooth = largest::smooth(&problem, largest::affine(&problem, 0).as_ref(), 0)
             .or_else(|| largest::smooth_to(&problem, 2, 0));
         prop_assert!(smooth.is_none_or(|bound| bound.rank == 2), "{}", lines);
+    }
+}
+
+/// Plants, and the direction of the states that no output shows.
+#[test]
+fn symmetries_are_those_that_no_output_shows() {
+    let cases = [
+        // A shift of two positions; and one of a velocity with an unmeasured signal.
+        ("x: [a, b, v]\ny: [q]\nf_x: {a: v, b: v, v: 0}\nf_y: {q: (a - b)*v}", Some("a 1, b 1")),
+        ("x: [v]\ny: [q]\nw: [f]\nf_x: {v: f}\nf_y: {q: 1}", Some("v 1")),
+        (
+            "x: [s, u, z]\ny: [d, m]\nw: [r]\nf_x: {s: -d - s + u, u: d - z, z: u - r}\nf_y: {d: s - u}\ng_y: {m: s - u - d}",
+            Some("s 1, u 1"),
+        ),
+        // A gain and the signal that it multiplies.
+        ("x: [k, p]\ny: [q]\nf_x: {k: 0, p: -p}\nf_y: {q: k*p}", Some("k k, p -p")),
+        // The input shows the gain, the square a sign alone, the sine a turn alone.
+        ("x: [k, p]\ny: [q]\nu: [u]\nf_x: {k: 0, p: u - p}\nf_y: {q: k*p}", None),
+        ("x: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p^2}", None),
+        ("x: [p]\ny: [q]\nf_x: {p: 1}\nf_y: {q: sin(p)}", None),
+        // An identity determines what the outputs do not.
+        ("x: [a, b]\ny: [q]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}\nidentities: [a*b - 2]", None),
+        // Of an output without an equation nothing is known.
+        ("x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}", None),
+    ];
+    for (lines, expected) in cases {
+        let plant = plant(lines);
+        let found = symmetry(&Problem::of(&plant)).unwrap();
+        let shown = found.map(|found| {
+            let of =
+                |(state, speed): &(Symbol, Expr)| format!("{} {}", plant.arena.name(*state), plant.arena.print(*speed));
+            found.states.iter().map(of).collect::<Vec<_>>().join(", ")
+        });
+        assert_eq!(shown.as_deref(), expected, "{lines}");
     }
 }
 

@@ -210,7 +210,7 @@ impl Search {
 
     /// The open possibilities after a search that found none.
     pub fn open(&self) -> Option<&'static str> {
-        let excluded = self.generalised.as_ref().is_some_and(Bound::excludes);
+        let excluded = self.symmetry.is_none() && self.generalised.as_ref().is_some_and(Bound::excludes);
         (self.verdict == SearchVerdict::None && excluded).then_some(
             "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
         )
@@ -234,6 +234,9 @@ impl Search {
             let them = if unseen.len() == 1 { "it" } else { "them" };
             diagnostic =
                 diagnostic.note(format!("no output depends on {}: nothing recovers {them}", unseen.join(", ")));
+        }
+        if let Some(symmetry) = &self.symmetry {
+            diagnostic = diagnostic.note(symmetry.sentence(&plant.arena));
         }
         for candidate in self.nearest().take(2) {
             diagnostic = diagnostic.note(candidate.sentence());
@@ -280,6 +283,10 @@ impl Search {
             return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
         }
         let refusal = self.declared.iter().map(declared).fold(refusal, Diagnostic::note);
+        if let Some(symmetry) = &self.symmetry {
+            let help = self.help().unwrap_or_else(|| "measure another signal".to_owned());
+            return refusal.note(symmetry.sentence(&plant.arena)).help(help);
+        }
         match self.bounds().find(|bound| bound.excludes()) {
             Some(bound) => {
                 let noted = refusal.note(bound.sentence(&plant.arena));
