@@ -283,7 +283,9 @@ impl Search {
             return refusal.note(best.sentence()).help("write the plant under `f_x` and `f_y`, with this phi");
         }
         let refusal = self.declared.iter().map(declared).fold(refusal, Diagnostic::note);
-        if let Some(symmetry) = &self.symmetry {
+        // A direction that no output shows is the refusal itself.
+        let symmetry = self.symmetry.as_ref().filter(|_| refusal.code != Code::NeverIdentifiable);
+        if let Some(symmetry) = symmetry {
             let help = self.help().unwrap_or_else(|| "measure another signal".to_owned());
             return refusal.note(symmetry.sentence(&plant.arena)).help(help);
         }
