@@ -42,9 +42,10 @@ impl Derivation {
         };
         if let (Some(cascade), Some(regression), Some(inverse)) = (&cascade.result, &regression.result, inverse) {
             let refused = turns::refused(plant, &domain, (cascade, regression, inverse));
-            if !refused.is_empty() && !plant.arena.budget().is_exhausted() {
-                found.extend(refused);
+            if !refused.is_empty() {
                 left_inverse.doubt();
+                // Out of budget, nothing is known to be wrong.
+                found.extend(refused.into_iter().filter(|_| !plant.arena.budget().is_exhausted()));
             }
         }
         let settled = found.len();

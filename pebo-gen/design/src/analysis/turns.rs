@@ -11,6 +11,7 @@ use super::left_inverse::checking::is_whole_turns;
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::zero::decide;
+use pebo_cas::forms::tidy::shortest;
 use pebo_cas::{Domain, Expr, Symbol};
 
 /// States that turn at once are tried up to so many: each triples the ways.
@@ -58,11 +59,12 @@ impl Claims<'_> {
         let turning: Vec<(Symbol, Expr)> =
             plant.x.iter().filter_map(|state| Some((state.symbol, plant.period(state.symbol)?))).collect();
         let ways = 3_usize.pow(u32::try_from(turning.len().min(MOST_TURNING)).unwrap_or(0));
-        (0..ways).any(|way| self.is_same((output, period), &turned(&turning, way), plant))
+        (0..ways).any(|way| self.is_same((output, period), &turned(&turning, way)))
     }
 
     /// Tests it where states turn by so many periods.
-    fn is_same(&self, (output, period): (Symbol, Expr), turned: &[(Symbol, Expr, i64)], plant: &Plant) -> bool {
+    fn is_same(&self, (output, period): (Symbol, Expr), turned: &[(Symbol, Expr, i64)]) -> bool {
+        let plant = self.plant;
         let (arena, domain) = (&plant.arena, &self.domain.without_equations());
         let plus = |symbol: Symbol, step: Expr| (symbol, arena.add(arena.of_symbol(symbol), step));
         let mut there: BTreeMap<Symbol, Expr> = BTreeMap::from([plus(output, period)]);
@@ -73,7 +75,7 @@ impl Claims<'_> {
         let mut steps: Vec<Expr> = Vec::new();
         for component in plant.transform() {
             let step = arena.sub(arena.substitute(component, &there), component);
-            let value = pebo_cas::forms::tidy::shortest(arena, domain, step);
+            let value = shortest(arena, domain, step);
             if !arena.symbols_of(&[value]).is_subset(&constants) || !vanishes(arena.sub(step, value)) {
                 return false;
             }

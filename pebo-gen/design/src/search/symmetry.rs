@@ -9,6 +9,7 @@
 
 use std::collections::BTreeSet;
 
+use pebo_cas::domain::zero::{decide, refute};
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
 use pebo_cas::linear::rank::null_vectors;
@@ -88,7 +89,10 @@ pub(super) fn symmetry(problem: &Problem<'_>) -> Result<Option<Symmetry>, Obstac
         }
         if exists && moves {
             let states = directed(problem, &field, (&states, &motions), &vector);
-            found.push(Symmetry { states, with_signals });
+            // A direction that vanishes by the identities moves nothing.
+            if states.iter().any(|(_, speed)| refute(arena, *speed, &problem.domain).is_some()) {
+                found.push(Symmetry { states, with_signals });
+            }
         }
     }
     Ok(found.into_iter().min_by_key(|symmetry| symmetry.entries(problem).join(", ").len()))
@@ -110,7 +114,8 @@ fn directed(
         }))
     };
     let all = states.iter().enumerate().map(|(index, state)| (*state, of(index)));
-    let moving: Vec<(Symbol, Expr)> = all.filter(|(_, speed)| !arena.is_zero(*speed)).collect();
+    let moving: Vec<(Symbol, Expr)> =
+        all.filter(|(_, speed)| !decide(arena, *speed, &problem.domain).is_zero()).collect();
     // The first state moves up.
     let is_downward = moving.first().is_some_and(|(_, speed)| arena.print(*speed).starts_with('-'));
     let turned = |(state, speed)| (state, if is_downward { arena.neg(speed) } else { speed });

@@ -132,6 +132,8 @@ fn symmetries_are_those_that_no_output_shows() {
         ("x: [p]\ny: [q]\nf_x: {p: 1}\nf_y: {q: sin(p)}", None),
         // An identity determines what the outputs do not.
         ("x: [a, b]\ny: [q]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}\nidentities: [a*b - 2]", None),
+        // A direction that vanishes by an identity moves nothing.
+        ("x: [a, b]\ny: [q]\nf_x: {a: (5*a - b)/2, b: (a + 3*b)/2}\nf_y: {q: a - b}\nidentities: [a - b]", None),
         // Of an output without an equation nothing is known.
         ("x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}", None),
     ];

@@ -15,12 +15,10 @@ use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Node, Rational, Symbol};
 
+use super::MOST;
 use super::products::{Term, apart, terms};
 use crate::search::integral::antiderivative;
 use crate::search::problem::Problem;
-
-/// More functions than this make no observer that anybody would run.
-const MOST: usize = 12;
 
 /// Steps by parts, and rounds over all rates, after which they are assumed endless.
 const MOST_STEPS: usize = 500;

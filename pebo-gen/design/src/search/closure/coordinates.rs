@@ -13,13 +13,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Symbol};
 
+use super::MOST;
 use super::constants::constants;
 use super::products::terms;
 use crate::search::candidate::Candidate;
 use crate::search::problem::Problem;
-
-/// More functions than this make no observer that anybody would run.
-const MOST: usize = 12;
 
 /// The functions of x and y, by the coordinates of a candidate; none where there are too many, or the rates hold others
 /// than products.
