@@ -16,6 +16,20 @@ use super::design::{Cascade, LeftInverse, Regression};
 /// A comparison with zero.
 pub(super) type DomainCondition = (Expr, Relation);
 
+/// The points of a domain at which the formulas of these claims have values.
+pub(super) fn where_valued(
+    plant: &Plant,
+    domain: &Domain,
+    (cascade, left_inverse, regression): (&Cascade, Option<&LeftInverse>, &Regression),
+) -> Domain {
+    let mut conditions = Conditions { listed: Vec::new(), known: domain.clone() };
+    // One that cannot be listed leaves its claim open.
+    let _ = conditions.list_cascade(plant, cascade);
+    let _ = left_inverse.and_then(|inverse| conditions.list_left_inverse(plant, inverse));
+    let _ = conditions.list_regression(plant, regression);
+    conditions.known
+}
+
 /// The conditions of the proofs besides the assumptions, each once.
 pub(super) struct Conditions {
     /// The listed conditions, in the order of their discovery, each with a key that is the same for equal ones.

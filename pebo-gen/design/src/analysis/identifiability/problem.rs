@@ -8,12 +8,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::tidy::shortest;
+use pebo_cas::forms::tidy::{operations, shortest};
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
 use super::flow::{Flow, effective, without_psi};
+use super::singular::take_common;
 
 /// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
 pub(super) const SHARE_OF_REMARKS: u64 = 8;
@@ -153,7 +154,7 @@ impl<'a> ObservabilityProblem<'a> {
     /// The statement on trajectories that hide unknowns.
     pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
-        let identifiable = identifiable(&self.plant.arena, self.domain, symbols, &observed.hidden);
+        let identifiable = identifiable(&self.plant.arena, self.domain, symbols, observed);
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
     }
 }
@@ -208,17 +209,36 @@ pub(super) fn free_columns(arena: &Arena, hidden: &[Vec<Expr>], unknowns: usize)
 }
 
 /// The identifiable combinations of the unknowns: those that do not change along the hidden directions, without
-/// denominators that may vanish.
-fn identifiable(arena: &Arena, domain: &Domain, symbols: &[Symbol], hidden: &[Vec<Expr>]) -> Vec<Expr> {
+/// denominators that may vanish. A row that is one of them as it was observed is preferred where it is shorter: by an
+/// identity, the others may have a factor that vanishes.
+fn identifiable(arena: &Arena, domain: &Domain, symbols: &[Symbol], observed: &Observation) -> Vec<Expr> {
+    let Observation { stack, hidden, .. } = observed;
     let free = free_columns(arena, hidden, symbols.len());
+    let is_free = |column: &usize| free.contains(&Some(*column));
+    let sum = |factors: &[(Expr, usize)]| {
+        arena.sum(factors.iter().map(|(factor, column)| arena.mul(*factor, arena.of_symbol(symbols[*column]))))
+    };
+    let as_observed = |row: &Vec<Expr>, column: usize| {
+        let is_other = |other: usize| other != column && !is_free(&other) && !arena.is_zero(row[other]);
+        if arena.is_zero(row[column]) || (0..symbols.len()).any(is_other) {
+            return None;
+        }
+        let mut entries = row.clone();
+        take_common(arena, &mut entries);
+        Some(sum(&entries.into_iter().zip(0..).collect::<Vec<_>>()))
+    };
     let combination = |column: usize| {
         let slope = |vector: &Vec<Expr>| arena.neg(shortest(arena, domain, vector[column]));
         let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| Some((slope(vector), (*free)?)));
         let factors: Vec<(Expr, usize)> = moved.chain([(arena.one(), column)]).collect();
-        let whole = without_denominators(arena, domain, &factors);
-        arena.sum(whole.into_iter().map(|(factor, column)| arena.mul(factor, arena.of_symbol(symbols[column]))))
+        let whole = sum(&without_denominators(arena, domain, &factors));
+        let known = arena.symbols_of(&[whole]);
+        let rows = stack.iter().filter_map(|row| as_observed(row, column));
+        let rows = rows.filter(|row| arena.symbols_of(&[*row]).is_subset(&known));
+        // The first of the shortest.
+        std::iter::once(whole).chain(rows).min_by_key(|form| operations(arena, *form)).unwrap_or(whole)
     };
-    (0..symbols.len()).filter(|column| !free.contains(&Some(*column))).map(combination).collect()
+    (0..symbols.len()).filter(|column| !is_free(column)).map(combination).collect()
 }
 
 /// Factors times the powers in their denominators that may vanish.

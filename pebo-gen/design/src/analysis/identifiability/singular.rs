@@ -268,7 +268,7 @@ fn without_common_factors(
 }
 
 /// Takes their common factors out of the entries that are not zero.
-fn take_common(arena: &Arena, entries: &mut [Expr]) -> Vec<(Expr, Rational)> {
+pub(super) fn take_common(arena: &Arena, entries: &mut [Expr]) -> Vec<(Expr, Rational)> {
     let mut factors = entries.iter().filter(|e| !arena.is_zero(**e)).map(|e| factors(arena, *e));
     let Some(mut common) = factors.next() else { return Vec::new() };
     for factors in factors {

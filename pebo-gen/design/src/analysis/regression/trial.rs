@@ -3,6 +3,7 @@
 use super::build::{self, Obstruction};
 use super::equation::Equation;
 use super::premises::Premises;
+use crate::analysis::conditions::where_valued;
 use crate::analysis::design::{Claim, Excitation, Identifiability, Regression, Verdict};
 use crate::analysis::limited::limited;
 use crate::analysis::{identifiability, permitted};
@@ -29,7 +30,8 @@ impl Trial {
             return Err(Obstruction::Refused(claim.verdict, said));
         };
         let identifiability = limited(plant, "identifiability", &mut said, |said| {
-            identifiability::prove(plant, domain, cascade, &regression, left_inverse, said)
+            let domain = where_valued(plant, domain, (cascade, left_inverse, &regression));
+            identifiability::prove(plant, &domain, cascade, &regression, left_inverse, said)
         });
         Ok(Self { equations, regression, identifiability, said })
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use crate::analysis::design::Still;
 use crate::analysis::identifiability::flow::{Flow, only_signal, varies, without_psi};
 use crate::analysis::identifiability::singular::{Volume, ZeroSet};
-use pebo_cas::linear::rank::proved_rank;
+use pebo_cas::linear::rank::{full_rank_throughout, proved_rank};
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
@@ -27,7 +27,8 @@ impl ObservabilityProblem<'_> {
         let columns: Vec<usize> = (0..self.unknowns()).filter(|column| !free.contains(&Some(*column))).collect();
         let rows = observed.stack.iter().map(|row| columns.iter().map(|column| row[*column]).collect::<Vec<Expr>>());
         let rows: Vec<Vec<Expr>> = rows.filter(|row| row.iter().any(|entry| !arena.is_zero(*entry))).collect();
-        if columns.is_empty() {
+        // A row may have no zeros where the determinant of all does.
+        if full_rank_throughout(arena, domain, &rows, columns.len()).unwrap_or(false) {
             return Ok(ZeroSet { all: true, ..ZeroSet::default() });
         }
         let zero_set = |rows: &[Vec<Expr>]| Volume::of(arena, domain, rows)?.zero_set(self.plant, domain);

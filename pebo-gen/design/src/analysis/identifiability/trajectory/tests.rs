@@ -312,3 +312,28 @@ fn factors_of_unmeasured_states_make_no_combination() {
     let ratio = "x: [a, b]\ny: [q]\nu: [v]\nassume: [a > 0]\nf_x: {a: v, b: 0}\nf_y: {q: b/a}\nphi: [a, b]";
     assert!(of(ratio).contains(&"while `v = 0`, only 1 function of `z1`, `z2` is identified".to_owned()));
 }
+
+#[test]
+fn a_combination_has_no_factor_that_vanishes_by_an_identity() {
+    let bearing = "parameters: [m]\nassume: [m > 0]\nx: [a, b]\ny: [s, p, r]\nu: [v]\nidentities: [p^2 + r^2 - m^2]\n\
+                   f_x: {a: v, b: 0}\nf_y: {s: p*a + r*b, p: r*v, r: -p*v}\nphi: [a, b]";
+    assert_eq!(of(bearing)[1], "while `v = 0`, only `p*z1 + r*z2` is identified");
+}
+
+#[test]
+fn trajectories_on_which_a_claim_has_no_value_are_not_listed() {
+    let scaled = "x: [a, b]\ny: [s, r]\nu: [w]\nf_x: {a: 0, b: 0}\nf_y: {s: r^3*a*w + b, r: 0}";
+    let at_zero = |phi: &str| of(&format!("{scaled}\nphi: {phi}")).iter().any(|line| line.contains("`r = 0`"));
+    assert!(at_zero("[a, b]"));
+    // The left inverse divides by r.
+    assert!(!at_zero("[r*a, b]"));
+}
+
+#[test]
+fn a_row_without_zeros_excludes_those_of_the_determinant() {
+    // Of the determinant of all rows the numerator may vanish with its denominator.
+    let cylinder = "parameters: {M: 120, A: 2e-3, B: 1.2e-3, k: 1.2e9, V: 1e-3, D: 300}\nx: [v, f]\ny: [p, q, s]\n\
+                    u: [c, d]\nf_x: {v: (A*p - B*q - D*v - f)/M, f: 0}\nphi: [v, f]\n\
+                    f_y: {p: k/(V + A*s)*(c - A*v) + k/(V - B*s)*(B*v - d), q: k/(V - B*s)*(B*v - d), s: v}";
+    assert_eq!(of(cylinder), ["the unknowns are identified without excitation by the inputs, even at rest"]);
+}
