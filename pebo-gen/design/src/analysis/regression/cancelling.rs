@@ -1,5 +1,5 @@
-//! Combinations of outputs whose rates lose what no regression can use: unmeasured signals, or terms that are not
-//! affine in phi.
+//! Combinations of outputs whose rates or values lose what no regression can use: unmeasured signals, or terms that are
+//! not affine in phi.
 
 use std::collections::BTreeSet;
 
@@ -17,8 +17,8 @@ const MOST_POINTS: usize = 8;
 pub(super) struct Combination {
     /// The combination.
     pub(super) output: Expr,
-    /// Its rate.
-    pub(super) rate: Expr,
+    /// Its rate, or its value.
+    pub(super) formula: Expr,
     /// Positions of the outputs in it.
     pub(super) outputs: Vec<usize>,
 }
@@ -33,24 +33,41 @@ pub(super) fn unmoved(premises: &Premises<'_>, outputs: &[usize]) -> Vec<Combina
         combined(premises, &field, (outputs, &rates), &vectors)
     };
     let mut found: Vec<Combination> = found().unwrap_or_default().into_iter().flatten().collect();
-    found.retain(|combination| !premises.is_moved(combination.rate));
+    found.retain(|combination| !premises.is_moved(combination.formula));
     found
 }
 
 /// Combinations of rates that are affine in phi, as many as were found; and whether there are others, with coefficients
 /// that move.
 pub(super) fn affine(premises: &Premises<'_>, outputs: &[usize]) -> Result<(Vec<Combination>, bool), Obstacle> {
-    let rates = rates(premises, outputs);
-    // The rates come last, so that each relation has one rate of its own, and of the others only their terms that are
-    // not affine.
-    let basis = [&[premises.arena().one()], premises.plant.transform().as_slice(), &rates].concat();
-    let field = Field::over(premises.arena(), &premises.domain.facts, &basis)?;
-    let vectors = relations(&field, &basis, &premises.plant.hidden())?.into_iter();
-    let mut of_rates: Vec<Vec<Fraction>> = vectors.map(|mut v| v.split_off(basis.len() - rates.len())).collect();
-    of_rates.retain(|vector| vector.iter().any(|entry| !entry.is_zero()));
-    let found = combined(premises, &field, (outputs, &rates), &of_rates)?;
+    let found = all_affine(premises, outputs, &rates(premises, outputs))?;
     let moving = found.iter().any(Option::is_none);
     Ok((found.into_iter().flatten().collect(), moving))
+}
+
+/// Combinations of outputs given by their values, of which the values are affine in phi, as many as were found. The last
+/// output of each is in no other.
+pub(super) fn of_values(premises: &Premises<'_>, outputs: &[usize]) -> Result<Vec<Combination>, Obstacle> {
+    let value = |output: &usize| Some((*output, premises.plant.y[*output].value?.expr));
+    let (outputs, values): (Vec<usize>, Vec<Expr>) = outputs.iter().filter_map(value).unzip();
+    Ok(all_affine(premises, &outputs, &values)?.into_iter().flatten().collect())
+}
+
+/// Combinations of outputs of which these formulas are affine in phi; none for one with coefficients that move.
+fn all_affine(
+    premises: &Premises<'_>,
+    outputs: &[usize],
+    formulas: &[Expr],
+) -> Result<Vec<Option<Combination>>, Obstacle> {
+    // The formulas come last, so that each relation has one of its own, and of the others only their terms that are not
+    // affine.
+    let basis = [&[premises.arena().one()], premises.plant.transform().as_slice(), formulas].concat();
+    let field = Field::over(premises.arena(), &premises.domain.facts, &basis)?;
+    let vectors = relations(&field, &basis, &premises.plant.hidden())?.into_iter();
+    let mut of_formulas: Vec<Vec<Fraction>> =
+        vectors.map(|mut vector| vector.split_off(basis.len() - formulas.len())).collect();
+    of_formulas.retain(|vector| vector.iter().any(|entry| !entry.is_zero()));
+    combined(premises, &field, (outputs, formulas), &of_formulas)
 }
 
 /// The combinations with these coefficients, scaled by the first one; none for coefficients that move: these would bring
@@ -58,7 +75,7 @@ pub(super) fn affine(premises: &Premises<'_>, outputs: &[usize]) -> Result<(Vec<
 fn combined(
     premises: &Premises<'_>,
     field: &Field<'_>,
-    (outputs, rates): (&[usize], &[Expr]),
+    (outputs, formulas): (&[usize], &[Expr]),
     vectors: &[Vec<Fraction>],
 ) -> Result<Vec<Option<Combination>>, Obstacle> {
     let (arena, constants) = (premises.arena(), premises.constants());
@@ -69,11 +86,11 @@ fn combined(
         let scaled = vector.iter().map(|entry| field.div(entry, pivot)).collect::<Result<Vec<_>, _>>()?;
         let scaled: Vec<Expr> = scaled.iter().map(|entry| field.show(entry)).collect();
         let is_constant = arena.symbols_of(&scaled).is_subset(&constants);
-        let (whole, of_output) = (arena.dot(&scaled, rates), outputs.iter().copied().zip(&scaled));
-        let rate = premises.shortest(whole);
-        found.push((is_constant && premises.are_equal(whole, rate)).then(|| Combination {
+        let (whole, of_output) = (arena.dot(&scaled, formulas), outputs.iter().copied().zip(&scaled));
+        let formula = premises.shortest(whole);
+        found.push((is_constant && premises.are_equal(whole, formula)).then(|| Combination {
             output: arena.dot(&scaled, &symbols),
-            rate,
+            formula,
             outputs: of_output.filter(|(_, factor)| !arena.is_zero(**factor)).map(|(output, _)| output).collect(),
         }));
     }

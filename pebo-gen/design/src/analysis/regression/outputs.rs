@@ -1,16 +1,19 @@
 //! The outputs of a regression: each by the equation that says most, and none left out that says something.
 //!
 //! In: a regression that identifies the unknowns. Out: the regression in which an output that is given by its value
-//! stands by that value, and outputs that it leaves out are added, by their values or else by their rates; and the
-//! outputs that remain unused, with the reason. A rate says less than the value: it has lost the constants, and the
-//! sensor's noise is differentiated. What is redundant is weighted by the noise of the sensors.
+//! stands by that value, or by a combination of values that is linear, and outputs that it leaves out are added, by their
+//! values or else by their rates; and the outputs that remain unused, with the reason. A rate says less than the value:
+//! it has lost the constants, and the sensor's noise is differentiated. What is redundant is weighted by the noise of the
+//! sensors.
 
 use std::collections::BTreeSet;
 
+use super::cancelling::{Combination, of_values};
 use super::cleared::value;
 use super::equation::Equation;
 use super::pool::Pool;
 use super::trial::Trial;
+use crate::analysis::affine::{self, Row};
 use crate::analysis::design::{UnusedOutput, UnusedReason};
 
 /// The trial with each output by the equation that says most, where that takes no excitation that the given one does
@@ -30,8 +33,16 @@ pub(super) fn completed(pool: &Pool<'_>, mut given: Trial) -> Trial {
     let by_value = |output| given.equations.iter().any(|e| e.is_instant(premises) && stands_alone(e, output));
     let moving = used.iter().copied().filter(|output| plant.y[*output].moves_with_value() && !by_value(*output));
     let moving = moving.filter(|_| plant.relation_form.is_none());
-    let values: Vec<Equation> = moving.filter_map(|output| value(premises, output)).collect();
-    let is_kept = |equation: &&Equation| !values.iter().any(|value| value.outputs == equation.outputs);
+    let (mut values, mut curved) = (Vec::new(), Vec::new());
+    for output in moving {
+        value(premises, output).map_or_else(|| curved.push(output), |equation| values.push(equation));
+    }
+    values.extend(combined_values(pool, &curved));
+    // A combination stands for its last output, which is in no other one.
+    let stands_for = |value: &Equation, equation: &Equation| {
+        value.outputs == equation.outputs || value.outputs.last().is_some_and(|last| equation.outputs == [*last])
+    };
+    let is_kept = |equation: &&Equation| !values.iter().any(|value| stands_for(value, equation));
     let mut kept = vec![given.equations.iter().filter(is_kept).cloned().collect(), given.equations.clone()];
     // Without the rates of outputs that are given by value, then with them.
     kept.truncate(1 + usize::from(!values.is_empty()));
@@ -49,6 +60,23 @@ pub(super) fn completed(pool: &Pool<'_>, mut given: Trial) -> Trial {
     unused.extend(added.into_iter().flat_map(|equation| equation.outputs).map(unproved));
     given.regression.unused = unused;
     given
+}
+
+/// Combinations of the values of outputs that are linear in z although the values are not: the squares of two ranges
+/// less one another.
+fn combined_values(pool: &Pool<'_>, outputs: &[usize]) -> Vec<Equation> {
+    let premises = &pool.premises;
+    let row = |combination: &Combination| {
+        let error = premises.arena().sub(combination.output, combination.formula);
+        affine::of(premises.plant, &premises.domain.without_equations(), error).ok()?
+    };
+    let says_something = |row: &Row| row[1..].iter().any(|factor| !premises.arena().is_zero(*factor));
+    let equation = |combination: Combination| {
+        let row = row(&combination).filter(says_something)?;
+        Some(Equation::instant(premises, premises.of_row(&row), combination.outputs))
+    };
+    let found = if outputs.len() > 1 { of_values(premises, outputs) } else { Ok(Vec::new()) };
+    found.unwrap_or_default().into_iter().filter_map(equation).collect()
 }
 
 /// The equation of an output, linear in z: of its value, or else of its rate; none if it says nothing of z.

@@ -121,7 +121,7 @@ impl<'a> Pool<'a> {
     }
 
     /// The equation of a combination of outputs, by its decomposition over phi or else by the left inverse.
-    fn in_z(&self, Combination { output, rate, outputs }: Combination) -> Option<Equation> {
+    fn in_z(&self, Combination { output, formula: rate, outputs }: Combination) -> Option<Equation> {
         let premises = &self.premises;
         if let Ok(Some(equation)) = affine_rate::equation(premises, (output, rate), outputs.clone()) {
             return Some(equation);

@@ -100,3 +100,13 @@ fn the_turn_of_an_output_changes_states_by_periods_alone() {
         assert_eq!(derivation.outcome, expected, "{lines}");
     }
 }
+
+#[test]
+fn values_that_are_not_linear_stand_in_combinations_that_are() {
+    let ranges = "x: [p, q]\ny: [r, s, t]\nu: [v, w]\nf_x: {p: v, q: w}\nphi: [p, q]\n\
+                  g_y: {r: p^2 + q^2, s: (p - 1)^2 + q^2, t: p^2 + (q - 1)^2}";
+    assert_eq!(regressed(ranges), (RegressionKind::Implicit, vec!["r".into(), "r+s".into(), "r+t".into()], Vec::new()));
+    let (_, derivation) = derive(ranges);
+    let identified = derivation.identifiability.result.unwrap();
+    assert!(identified.kind == Excitation::Instant && identified.singular_where.is_empty());
+}
