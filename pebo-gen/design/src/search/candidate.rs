@@ -3,7 +3,7 @@
 use crate::analysis::{Class, Derivation, Excitation, Outcome, Verdict};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::{Arena, Expr, Symbol};
+use pebo_cas::{Arena, Expr, Relation, Symbol};
 
 use super::problem::Problem;
 
@@ -14,14 +14,27 @@ pub struct Candidate {
     pub plant: Plant,
     /// The derivation.
     pub derivation: Derivation,
+    /// The number of conditions on signals that come with the transform.
+    exceptions: usize,
 }
 
 impl Candidate {
     /// Derives the claims of a transform.
     pub(super) fn of(problem: &Problem<'_>, phi: &[Expr]) -> Self {
         let plant = problem.plant.with_transform(phi);
+        Self::derive(plant, problem)
+    }
+
+    /// Derives the claims of a plant with its transform.
+    pub(super) fn derive(plant: Plant, problem: &Problem<'_>) -> Self {
         let derivation = Derivation::derive(&plant);
-        Self { plant, derivation }
+        let arena = &plant.arena;
+        let is_exception = |condition: &&(Expr, Relation)| {
+            !arena.symbols_of(&[condition.0]).is_disjoint(&problem.signals)
+                && !problem.domain.grants(arena, **condition)
+        };
+        let exceptions = derivation.conditions.iter().filter(is_exception).count();
+        Self { plant, derivation, exceptions }
     }
 
     /// Tests whether every claim is proved and every state is recovered.
@@ -72,7 +85,7 @@ impl Candidate {
     }
 
     /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
-    /// affine in z, takes few samples as they are, and has the plainer form.
+    /// affine in z and few exceptions, takes few samples as they are, and has the plainer form.
     pub(super) fn merit(&self) -> impl Ord + use<> {
         (self.standing(), self.unfiltered().len(), self.form())
     }
@@ -85,7 +98,12 @@ impl Candidate {
             Outcome::Rejected => 2,
         };
         let missing = self.plant.x.len() - self.recovered().min(self.plant.x.len());
-        (accepted, missing, self.copies_an_output(), !self.is_linear())
+        (accepted, missing, self.copies_an_output(), !self.is_linear(), self.exceptions)
+    }
+
+    /// Tests whether it holds wherever the plant's own formulas have values: near an exception, estimates are lost.
+    pub(super) fn is_everywhere(&self) -> bool {
+        self.exceptions == 0
     }
 
     /// The order of candidates by their form: a plain cascade, few components, unknowns identifiable at once, and short.

@@ -35,7 +35,7 @@ pub mod words;
 
 use std::collections::BTreeSet;
 
-use crate::analysis::{Class, Derivation};
+use crate::analysis::Class;
 use crate::plant::{Noisier, Plant, TransformOrigin};
 use pebo_cas::Expr;
 use pebo_cas::domain::zero::decide;
@@ -133,7 +133,7 @@ fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> Attempts<'a>
     let plant = problem.plant;
     let mut attempts = Attempts::new(problem);
     // The transform of the plant's class may leave nothing better to be expected.
-    let own = of_class(plant).filter(|own| class.is_none_or(|class| own.derivation.class == class));
+    let own = of_class(problem).filter(|own| class.is_none_or(|class| own.derivation.class == class));
     attempts.candidates.extend(own);
     attempts.run(class);
     // An output may determine a state, with all of its noise: transforms that filter it were looked for first.
@@ -173,9 +173,9 @@ fn accepted(plant: &Plant, class: Option<Class>) -> Option<Candidate> {
 }
 
 /// The transform that the plant's class gives: coils have their fluxes.
-fn of_class(plant: &Plant) -> Option<Candidate> {
-    let is_own = plant.origin == TransformOrigin::Class && !plant.phi.is_empty();
-    is_own.then(|| Candidate { plant: plant.clone(), derivation: Derivation::derive(plant) })
+fn of_class(problem: &Problem<'_>) -> Option<Candidate> {
+    let is_own = problem.plant.origin == TransformOrigin::Class && !problem.plant.phi.is_empty();
+    is_own.then(|| Candidate::derive(problem.plant.clone(), problem))
 }
 
 /// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
@@ -195,7 +195,7 @@ const MOST_SHIFTED: usize = 5;
 /// The share of the remaining budget for transforms with a plain cascade where generalised ones are tried after them.
 const FOR_PLAIN: u64 = 2;
 
-/// The share of the remaining budget for a transform with less noise than one that is accepted.
+/// The share of the remaining budget for a transform with less noise or fewer exceptions than one that is accepted.
 const FOR_LESS_NOISE: u64 = 4;
 
 /// The share of the remaining budget for the reason why there is none.
@@ -261,10 +261,11 @@ impl<'a> Attempts<'a> {
 
 impl Attempts<'_> {
     /// Tests whether there is nothing better to be expected: a plain cascade that needs the value of an output needs it
-    /// in all of its forms, a generalised one may do without.
+    /// in all of its forms, a generalised one may do without; likewise where it has exceptions.
     fn is_over(&self) -> bool {
+        let is_plain = self.class == Class::Pebo;
         let is_quiet =
-            |c: &Candidate| !c.copies_an_output() && (self.class == Class::Pebo || c.unfiltered().is_empty());
+            |c: &Candidate| !c.copies_an_output() && (is_plain || c.unfiltered().is_empty() && c.is_everywhere());
         !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && is_quiet(c))
     }
 

@@ -308,3 +308,13 @@ fn a_state_in_friction_may_keep_its_sign() {
     assert_eq!(declaration.lines(&candidate.plant), "`assume: [w > 0]`");
     assert!(candidate.is_full());
 }
+
+#[test]
+fn a_transform_without_exceptions_comes_before_a_plain_cascade_with_one() {
+    let lines = "x: [a, b]\ny: [r, s]\nu: [w]\nf_x: {a: -a*w, b: 0}\nf_y: {r: r*w, s: a + r*b}";
+    let candidates = solve(&plant(lines), None).candidates;
+    assert_eq!(candidates[0].formulas(), ["a", "b"]);
+    assert!(candidates[0].derivation.class == Class::Gpebo && candidates[0].is_everywhere());
+    // r*a is constant, but says nothing of a while r is zero.
+    assert!(candidates.iter().any(|other| other.derivation.class == Class::Pebo && !other.is_everywhere()));
+}
