@@ -52,7 +52,8 @@ pub(super) fn steps(
                 steps.push((state, shift));
                 continue;
             }
-            found.push(lost_by_turns(plant, (index, step), (state, shift), blind));
+            let is_restricted = bounded && constant;
+            found.push(lost_by_turns(plant, (index, step), (state, shift), (blind, is_restricted)));
             return Err(if blind && !bounded { Verdict::Refuted } else { Verdict::Undecided });
         }
     }
@@ -64,16 +65,17 @@ fn lost_by_turns(
     plant: &Plant,
     (index, step): (usize, Expr),
     (state, shift): (Symbol, Expr),
-    blind: bool,
+    (blind, is_restricted): (bool, bool),
 ) -> Diagnostic {
     let arena = &plant.arena;
     let (name, number) = (arena.name(state), index + 1);
     let (step, moved) = (arena.print(step), arena.print(shift));
-    let diagnostic = Diagnostic::error(
-        Code::UnknownUpToTurns,
-        plant.phi[index].span,
-        format!("{name} is not determined: theta{number} is known only up to multiples of {step}"),
-    )
+    let title = if is_restricted {
+        format!("{name} is not determined: multiples of {step} in theta{number} are left to the assumptions")
+    } else {
+        format!("{name} is not determined: theta{number} is known only up to multiples of {step}")
+    };
+    let diagnostic = Diagnostic::error(Code::UnknownUpToTurns, plant.phi[index].span, title)
     .label(format!("where this component changes by {step}, {name} changes by `{moved}`"))
     .note(if blind {
         "the outputs depend on this component only through its sine and cosine"
@@ -84,6 +86,10 @@ fn lost_by_turns(
         Some(period) => diagnostic.help(format!(
             "declare a period under `angles` that divides this change, instead of `{}`, or measure another output",
             arena.print(period)
+        )),
+        None if is_restricted => diagnostic.help(format!(
+            "declare the period, `angles: {{{name}: {moved}}}`: {name} is then recovered up to it, to be placed \
+             within its bounds"
         )),
         None => diagnostic.help(
             "choose a phi in which the states do not need this component, or one whose regression is affine, or measure \
