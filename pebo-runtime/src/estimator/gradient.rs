@@ -19,8 +19,8 @@ use crate::{Fault, Real, Turn};
 pub struct Gradient<S: Real, const NE: usize> {
     /// `Gamma^-1`.
     inertia: Information<S, NE>,
-    /// True if the gain turns with the unknown.
-    carried: bool,
+    /// `Gamma^-1` at the start, if the gain turns with the unknown.
+    carried: Option<Information<S, NE>>,
     theta: Sum<S, NE, 1>,
 }
 
@@ -42,14 +42,14 @@ impl<S: Real, const NE: usize> Gradient<S, NE> {
     }
 
     fn of(inertia: Information<S, NE>) -> Self {
-        Self { inertia, carried: false, theta: Sum::new(SVector::zeros()) }
+        Self { inertia, carried: None, theta: Sum::new(SVector::zeros()) }
     }
 
     /// The same with a gain that turns with the unknown, `Gamma` becoming `T Gamma T^T`: the estimator of the unknown
     /// as it was at the start, in any coordinates. Without it, the gain is one in the coordinates of the moment.
     #[must_use]
     pub fn carrying_its_gain(self) -> Self {
-        Self { carried: true, ..self }
+        Self { carried: Some(self.inertia), ..self }
     }
 
     /// The same gains from another estimate.
@@ -87,7 +87,7 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
 
     fn turn(&mut self, turn: &Turn<S, NE>) {
         self.theta.add(&turn.of_unknown(self.theta.value()));
-        if self.carried {
+        if self.carried.is_some() {
             self.inertia.turn(turn);
             // Marked here rather than looked for at each step.
             let gain: S = as_blemish(self.inertia.is_finite());
@@ -96,11 +96,12 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Gradien
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {
+        self.inertia = self.carried.unwrap_or(self.inertia);
         self.theta = Sum::new(*estimate);
     }
 
     fn is_finite(&self) -> bool {
-        self.theta.is_finite() && (!self.carried || self.inertia.is_finite())
+        self.theta.is_finite() && (self.carried.is_none() || self.inertia.is_finite())
     }
 
     fn blemish(&self) -> S {

@@ -105,7 +105,7 @@ fn run<E: Estimator<f32, 2, 2>, R: RegressionOperator<f32, 2, 2>>(
     let mut gap = Gap::new();
     for k in 0..2000_u32 {
         let y = circuit.outputs();
-        gap.add(&duty, DT);
+        gap.add(&duty, DT)?;
         if k == 700 {
             let broken = Vector2::new(y.x, f32::NAN);
             report.flag(observer.step(broken, duty, DT) == Err(Fault::Output { index: 1 }));

@@ -143,6 +143,17 @@ fn estimates_are_those_without_rebasing() {
     }
 }
 
+#[test]
+fn a_carried_gain_is_its_first_one_after_a_reset() {
+    let matrix = Sum::new(Matrix2::new(2.0, 1.0, 0.0, 0.5));
+    let new = Gradient::<f64, 2>::diagonal(&pair(3.0, 5.0)).unwrap().carrying_its_gain();
+    let mut turned = new;
+    Estimator::<f64, 1, 2>::turn(&mut turned, &Turn::new(&matrix).unwrap());
+    assert_ne!(turned, new);
+    Estimator::<f64, 1, 2>::reset(&mut turned, &Vector2::zeros());
+    assert_eq!(turned, new);
+}
+
 /// [`apart`] of least squares without forgetting, and of the gradient that carries its gain.
 fn both_apart<S: Real>(every: u32, steps: u32, dt: f64, lambda: [f64; 4]) -> [[f64; 2]; 2] {
     let squares = LeastSquares::<S, 2>::diagonal(&pair(1e3, 1e3), Real::from_f64(0.0)).unwrap();

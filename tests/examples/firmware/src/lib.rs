@@ -48,7 +48,9 @@ impl Task {
     /// # Errors
     /// The fault of a sample that is left out: the next good one covers its period too.
     pub fn period(&mut self, v2: f32, v4: f32, d: f32, dt: f32) -> Result<cuk::X, Fault> {
-        self.gap.add(&SVector::from([d]), dt);
+        // A duty cycle that there cannot be is unknown: it shall not be part of a mean.
+        let d = if (0.0..=1.0).contains(&d) { d } else { f32::NAN };
+        self.gap.add(&SVector::from([d]), dt)?;
         let mut gap = self.gap;
         let (u, time) = gap.take();
         let y = SVector::from([v2, v4]);
@@ -92,6 +94,38 @@ mod tests {
         let once = whole.step(y, u, 3e-5).expect("a good sample");
         // Three periods are summed up in one and not in the other: a rounding of the time, of currents below 0.1 A.
         assert!((late.i1 - once.i1).abs() < 1e-7 && (late.i3 - once.i3).abs() < 1e-7, "{late:?} {once:?}");
+    }
+
+    /// Whatever a sensor, a counter or a timer gives in one period, the next good one is accepted, with the estimate that
+    /// it has without the bad one.
+    #[test]
+    fn no_bad_value_outlives_its_period() {
+        let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN];
+        let values = bad.into_iter().chain([-1.0, 0.0]);
+        for (place, value) in (0..4).flat_map(|place| values.clone().map(move |value| (place, value))) {
+            // Zero is a good voltage and a good duty cycle; a volt too little is one.
+            if place < 2 && value.abs() < 2.0 || place == 2 && value == 0.0 {
+                continue;
+            }
+            let (mut task, mut whole) = (Task::new().expect("settings"), observer().expect("positive gains"));
+            let mut period = [10.0, -12.0, 0.6, 1e-5];
+            let good = |task: &mut Task| task.period(10.0, -12.0, 0.6, 1e-5);
+            let (y, u) = (cuk::Y { v2: 10.0, v4: -12.0 }, cuk::U { d: 0.6 });
+            assert_eq!(good(&mut task), whole.step(y, u, 1e-5));
+            period[place] = value;
+            let [v2, v4, d, dt] = period;
+            assert!(task.period(v2, v4, d, dt).is_err() || value > 1.0, "{place}: {value}");
+            let next = good(&mut task).expect("a good sample");
+            if place == 3 && value > 1.0 {
+                // So long that the observer has started again.
+                continue;
+            }
+            // Of a bad time nothing is known; otherwise the bad period is covered by the next one.
+            let time = if place == 3 { 1e-5 } else { 2e-5 };
+            let once = whole.step(y, u, time).expect("a good sample");
+            // A rounding of the time, of currents below 0.1 A.
+            assert!((next.i1 - once.i1).abs() < 1e-7 && (next.i3 - once.i3).abs() < 1e-7, "{place}: {value}");
+        }
     }
 
     #[test]
