@@ -70,7 +70,7 @@ struct CostReport {
 struct TransformReport {
     origin: &'static str,
     z: Vec<String>,
-    /// The transform to which it was preferred, where that takes the noise of samples.
+    /// The transform to which it was preferred, where that takes the noise of samples or needs conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     noisier: Option<NoisierReport>,
 }
@@ -80,6 +80,9 @@ struct NoisierReport {
     phi: Vec<String>,
     /// States with the outputs whose samples they take as they are.
     unfiltered: IndexMap<String, Vec<String>>,
+    /// What it needs of signals and the plant does not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    conditions: Vec<String>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -302,7 +305,7 @@ fn noisier(arena: &Arena, found: &Noisier) -> NoisierReport {
     for (state, output) in &found.unfiltered {
         unfiltered.entry(arena.name(*state)).or_default().push(arena.name(*output));
     }
-    NoisierReport { phi: printed(arena, &found.phi), unfiltered }
+    NoisierReport { phi: printed(arena, &found.phi), unfiltered, conditions: conditions(arena, &found.conditions) }
 }
 
 fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {

@@ -28,12 +28,17 @@ pub(crate) fn transform(plant: &Plant) -> Vec<String> {
     };
     let note = |noisier: &Noisier| {
         let phi: Vec<String> = noisier.phi.iter().map(|component| arena.print(*component)).collect();
-        let (states, outputs) = noisier.unfiltered.iter().copied().unzip();
-        let (phi, states, outputs) = (phi.join(", "), names(states), names(outputs));
-        format!(
-            "preferred to `phi: [{phi}]`, in which each sample of {outputs} enters {states} with all of its noise; \
-             write that `phi` to have it"
-        )
+        let (states, outputs): (BTreeSet<Symbol>, _) = noisier.unfiltered.iter().copied().unzip();
+        let conditions = super::conditions(arena, &noisier.conditions);
+        let needed =
+            (!conditions.is_empty()).then(|| format!("which needs {}", listed(conditions.iter().map(String::as_str))));
+        let noisy = (!states.is_empty()).then(|| {
+            let (states, outputs) = (names(states), names(outputs));
+            format!("in which each sample of {outputs} enters {states} with all of its noise")
+        });
+        let reasons: Vec<String> = noisy.into_iter().chain(needed).collect();
+        let (phi, reasons) = (phi.join(", "), reasons.join(", and "));
+        format!("preferred to `phi: [{phi}]`, {reasons}; write that `phi` to have it")
     };
     plant.noisier.iter().map(note).collect()
 }

@@ -107,13 +107,16 @@ impl TransformOrigin {
     }
 }
 
-/// A transform that is accepted and of a plainer form than another, which takes fewer samples as they are.
+/// A transform that is accepted and of a plainer form than another, which takes fewer samples as they are or needs fewer
+/// conditions on signals: near an exception, all noise is much.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Noisier {
     /// Its components.
     pub phi: Vec<Expr>,
     /// States, each with an output whose samples its left inverse takes with all of their noise.
     pub unfiltered: Vec<(Symbol, Symbol)>,
+    /// Conditions on signals that it needs and the plant does not.
+    pub conditions: Vec<(Expr, Relation)>,
 }
 
 /// A constant of the plant.

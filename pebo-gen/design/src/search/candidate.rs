@@ -14,8 +14,8 @@ pub struct Candidate {
     pub plant: Plant,
     /// The derivation.
     pub derivation: Derivation,
-    /// The number of conditions on signals that come with the transform.
-    exceptions: usize,
+    /// Conditions on signals that come with the transform.
+    pub(super) conditions: Vec<(Expr, Relation)>,
 }
 
 impl Candidate {
@@ -29,12 +29,12 @@ impl Candidate {
     pub(super) fn derive(plant: Plant, problem: &Problem<'_>) -> Self {
         let derivation = Derivation::derive(&plant);
         let arena = &plant.arena;
-        let is_exception = |condition: &&(Expr, Relation)| {
+        let is_own = |condition: &&(Expr, Relation)| {
             !arena.symbols_of(&[condition.0]).is_disjoint(&problem.signals)
                 && !problem.domain.grants(arena, **condition)
         };
-        let exceptions = derivation.conditions.iter().filter(is_exception).count();
-        Self { plant, derivation, exceptions }
+        let conditions = derivation.conditions.iter().filter(is_own).copied().collect();
+        Self { plant, derivation, conditions }
     }
 
     /// Tests whether every claim is proved and every state is recovered.
@@ -87,7 +87,7 @@ impl Candidate {
     /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
     /// affine in z and few exceptions, takes few samples as they are, and has the plainer form.
     pub(super) fn merit(&self) -> impl Ord + use<> {
-        (self.standing(), self.unfiltered().len(), self.form())
+        (self.standing(), self.conditions.len(), self.unfiltered().len(), self.form())
     }
 
     /// The order of candidates by what they are worth whatever the noise of the sensors is.
@@ -98,12 +98,12 @@ impl Candidate {
             Outcome::Rejected => 2,
         };
         let missing = self.plant.x.len() - self.recovered().min(self.plant.x.len());
-        (accepted, missing, self.copies_an_output(), !self.is_linear(), self.exceptions)
+        (accepted, missing, self.copies_an_output(), !self.is_linear())
     }
 
     /// Tests whether it holds wherever the plant's own formulas have values: near an exception, estimates are lost.
     pub(super) fn is_everywhere(&self) -> bool {
-        self.exceptions == 0
+        self.conditions.is_empty()
     }
 
     /// The order of candidates by their form: a plain cascade, few components, unknowns identifiable at once, and short.

@@ -161,8 +161,13 @@ fn noisier(candidates: &[Candidate]) -> Option<Noisier> {
     let best = candidates.first().filter(|best| best.is_full())?;
     let equal = candidates.iter().filter(|candidate| candidate.standing() == best.standing());
     let plainest = equal.min_by_key(|candidate| candidate.form())?;
-    let is_best = plainest.unfiltered() == best.unfiltered();
-    (!is_best).then(|| Noisier { phi: plainest.plant.transform(), unfiltered: plainest.unfiltered() })
+    let needs_more = plainest.conditions.len() > best.conditions.len();
+    let is_best = plainest.unfiltered() == best.unfiltered() && !needs_more;
+    let of_plainest = || {
+        let conditions = if needs_more { plainest.conditions.clone() } else { Vec::new() };
+        Noisier { phi: plainest.plant.transform(), unfiltered: plainest.unfiltered(), conditions }
+    };
+    (!is_best).then(of_plainest)
 }
 
 /// The best transform of a plant, if one is accepted that recovers all states.

@@ -316,5 +316,9 @@ fn a_transform_without_exceptions_comes_before_a_plain_cascade_with_one() {
     assert_eq!(candidates[0].formulas(), ["a", "b"]);
     assert!(candidates[0].derivation.class == Class::Gpebo && candidates[0].is_everywhere());
     // r*a is constant, but says nothing of a while r is zero.
-    assert!(candidates.iter().any(|other| other.derivation.class == Class::Pebo && !other.is_everywhere()));
+    let plain = candidates.iter().find(|other| other.derivation.class == Class::Pebo).expect("a plain cascade");
+    assert_eq!(plain.formulas(), ["b", "r*a"]);
+    let noisier = candidates[0].plant.noisier.as_ref().expect("named");
+    assert!(noisier.phi == plain.plant.transform() && noisier.unfiltered.is_empty());
+    assert_eq!(noisier.conditions.len(), 1);
 }

@@ -71,9 +71,10 @@ impl ObserverDriver {
             None => self.observer.sample(y, u, dt, hat),
             Some(gap) => {
                 let mut whole = *gap;
-                whole.add(&pad(u), dt);
-                let (mean, time) = whole.take();
-                self.observer.sample(y, &mean.as_slice()[..u.len()], time, hat)
+                whole.add(&pad(u), dt).and_then(|()| {
+                    let (mean, time) = whole.take();
+                    self.observer.sample(y, &mean.as_slice()[..u.len()], time, hat)
+                })
             }
         };
         let Err(fault) = taken else {
@@ -107,7 +108,8 @@ impl ObserverDriver {
     }
 
     fn wait(&mut self, u: &[f64], dt: f64) {
-        self.gap.get_or_insert_default().add(&pad(u), dt);
+        // Of a time that is none nothing is taken: it was refused with its sample.
+        let _ = self.gap.get_or_insert_default().add(&pad(u), dt);
     }
 
     /// The samples that were refused.

@@ -85,7 +85,7 @@ pub(super) const MODEL: &[Key] = &[
         "class",
         Shape::Choice(CascadeClass::NAMES),
         "class: pebo",
-        "The cascade that is asked for; if left out, a plain one (pebo) is preferred unless a generalised one (gpebo) takes fewer samples unfiltered",
+        "The cascade that is asked for; if left out, a plain one (pebo) is preferred unless a generalised one (gpebo) takes fewer samples unfiltered or needs fewer conditions",
     ),
     optional(
         "regression",
