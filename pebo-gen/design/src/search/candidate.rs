@@ -29,9 +29,14 @@ impl Candidate {
     pub(super) fn derive(plant: Plant, problem: &Problem<'_>) -> Self {
         let derivation = Derivation::derive(&plant);
         let arena = &plant.arena;
+        // The plant may state that a radicand is not negative and that it is not zero.
+        let is_of_plant = |(expr, relation): (Expr, Relation)| {
+            let parts = [Relation::NonNegative, Relation::NonZero];
+            let parts = if relation == Relation::Positive { &parts[..] } else { &[relation] };
+            parts.iter().all(|part| problem.domain.grants(arena, (expr, *part)))
+        };
         let is_own = |condition: &&(Expr, Relation)| {
-            !arena.symbols_of(&[condition.0]).is_disjoint(&problem.signals)
-                && !problem.domain.grants(arena, **condition)
+            !arena.symbols_of(&[condition.0]).is_disjoint(&problem.signals) && !is_of_plant(**condition)
         };
         let conditions = derivation.conditions.iter().filter(is_own).copied().collect();
         Self { plant, derivation, conditions }

@@ -12,6 +12,7 @@ mod exponential;
 mod facts;
 mod kernel;
 mod memo;
+mod points;
 mod shift;
 
 use std::cell::{Cell, RefCell};
@@ -130,6 +131,9 @@ impl Signs<'_, '_> {
         }
         let (content, rest) = primitive(poly);
         debug_assert!(!content.is_negative());
+        if self.are_both(&rest)? {
+            return Ok(None);
+        }
         if let Some(sign) = self.by_facts(&rest)? {
             return Ok(Some(sign));
         }
