@@ -82,6 +82,8 @@ fn the_turn_of_an_output_changes_states_by_periods_alone() {
     let arm = |value: &str| {
         format!("x: [a]\ny: [s]\nu: [w]\nangles: {{s: 2*pi, a: 2*pi}}\nf_x: {{a: w}}\ng_y: {{s: {value}}}\nphi: [a]")
     };
+    let friction =
+        "x: [v, b]\ny: [q]\nu: [w]\nangles: {q: 2*pi}\nf_x: {v: w - b*v, b: 0}\nf_y: {q: v}\nphi: [v + b*q, b]";
     let cases = [
         (format!("{heading}\nangles: {{s: 2*pi, psi: 2*pi}}"), Outcome::Accepted),
         (format!("{heading}\nangles: {{psi: 2*pi}}"), Outcome::Accepted),
@@ -94,6 +96,10 @@ fn the_turn_of_an_output_changes_states_by_periods_alone() {
         (arm("2*a"), Outcome::Undecided),
         (arm("a"), Outcome::Accepted),
         (arm("-a"), Outcome::Accepted),
+        // The step of the coordinate depends on the friction.
+        (friction.to_owned(), Outcome::Accepted),
+        // A trajectory a turn back leaves the domain.
+        (format!("{friction}\nassume: [q > -4]"), Outcome::Undecided),
     ];
     for (lines, expected) in cases {
         let (_, derivation) = derive(&lines);
