@@ -913,7 +913,7 @@ class Certificate:
                 wrong = "a combination is not identified"
             elif known + len(hidden) != self.width:
                 wrong = f"the rank is {known}"
-            elif len(hidden) + len(seen) != self.width or rank(directions) + (rank(gradients) if seen else 0) != self.width:
+            elif rank(directions) != len(hidden) or len(hidden) + (rank(gradients) if seen else 0) != self.width:
                 wrong = "directions and combinations are not all of the unknowns"
             if wrong:
                 return self.say(claim, "FALSE", f": {wrong} at {self.shown(point)}")

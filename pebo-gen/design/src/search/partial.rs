@@ -40,7 +40,8 @@ pub(super) fn partial(
         if !problem.goes_on() || !unseen(&plant).is_empty() {
             return None;
         }
-        let candidate = budget.share(SHARE, || accepted(&plant, class))?;
+        // What is no more than a sample again observes nothing.
+        let candidate = budget.share(SHARE, || accepted(&plant, class)).filter(|found| !found.copies_an_output())?;
         Some((candidate, Declaration::Unmeasured(states)))
     };
     let unseen = candidates.iter().find_map(Candidate::hidden_states).filter(|states| states.len() < plant.x.len());

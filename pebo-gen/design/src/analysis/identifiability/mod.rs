@@ -14,6 +14,7 @@ mod crossing;
 mod divided;
 mod excitation;
 mod flow;
+mod identified;
 mod joined;
 mod never;
 mod problem;

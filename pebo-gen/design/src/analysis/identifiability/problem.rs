@@ -3,18 +3,17 @@
 //! In: a regression on a domain, and signals that are constant. Out: rows of the rank of all derivatives, and the
 //! directions that they do not observe. A point proves a rank from below, exact algebra the directions.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::forms::tidy::{operations, shortest};
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Symbol};
 
 use super::flow::{Flow, effective, without_psi};
-use super::singular::take_common;
+use super::identified;
 
 /// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
 pub(super) const SHARE_OF_REMARKS: u64 = 8;
@@ -154,7 +153,7 @@ impl<'a> ObservabilityProblem<'a> {
     /// The statement on trajectories that hide unknowns.
     pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
-        let identifiable = identifiable(&self.plant.arena, self.domain, symbols, observed);
+        let identifiable = identified::combinations(&self.plant.arena, self.domain, symbols, observed);
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
     }
 }
@@ -206,53 +205,4 @@ pub(super) fn free_columns(arena: &Arena, hidden: &[Vec<Expr>], unknowns: usize)
         })
     };
     (0..hidden.len()).map(own).collect()
-}
-
-/// The identifiable combinations of the unknowns: those that do not change along the hidden directions, without
-/// denominators that may vanish. A row that is one of them as it was observed is preferred where it is shorter: by an
-/// identity, the others may have a factor that vanishes.
-fn identifiable(arena: &Arena, domain: &Domain, symbols: &[Symbol], observed: &Observation) -> Vec<Expr> {
-    let Observation { stack, hidden, .. } = observed;
-    let free = free_columns(arena, hidden, symbols.len());
-    let is_free = |column: &usize| free.contains(&Some(*column));
-    let sum = |factors: &[(Expr, usize)]| {
-        arena.sum(factors.iter().map(|(factor, column)| arena.mul(*factor, arena.of_symbol(symbols[*column]))))
-    };
-    let as_observed = |row: &Vec<Expr>, column: usize| {
-        let is_other = |other: usize| other != column && !is_free(&other) && !arena.is_zero(row[other]);
-        if arena.is_zero(row[column]) || (0..symbols.len()).any(is_other) {
-            return None;
-        }
-        let mut entries = row.clone();
-        take_common(arena, &mut entries);
-        Some(sum(&entries.into_iter().zip(0..).collect::<Vec<_>>()))
-    };
-    let combination = |column: usize| {
-        let slope = |vector: &Vec<Expr>| arena.neg(shortest(arena, domain, vector[column]));
-        let moved = hidden.iter().zip(&free).filter_map(|(vector, free)| Some((slope(vector), (*free)?)));
-        let factors: Vec<(Expr, usize)> = moved.chain([(arena.one(), column)]).collect();
-        let whole = sum(&without_denominators(arena, domain, &factors));
-        let known = arena.symbols_of(&[whole]);
-        let rows = stack.iter().filter_map(|row| as_observed(row, column));
-        let rows = rows.filter(|row| arena.symbols_of(&[*row]).is_subset(&known));
-        // The first of the shortest.
-        std::iter::once(whole).chain(rows).min_by_key(|form| operations(arena, *form)).unwrap_or(whole)
-    };
-    (0..symbols.len()).filter(|column| !is_free(column)).map(combination).collect()
-}
-
-/// Factors times the powers in their denominators that may vanish.
-fn without_denominators(arena: &Arena, domain: &Domain, factors: &[(Expr, usize)]) -> Vec<(Expr, usize)> {
-    let mut common: BTreeMap<Expr, Rational> = BTreeMap::new();
-    for (factor, _) in factors {
-        let Node::Product(product) = arena.node(*factor) else { continue };
-        for (base, power) in product.factors.iter().filter(|(_, power)| power.is_negative()) {
-            let most = common.entry(*base).or_insert(Rational::ZERO);
-            *most = most.clone().max(-power);
-        }
-    }
-    common.retain(|base, _| !domain.implies(arena, *base, Relation::NonZero));
-    let whole =
-        |factor: Expr| arena.multiply(&Rational::ONE, common.clone().into_iter().chain([(factor, Rational::ONE)]));
-    factors.iter().map(|(factor, column)| (whole(*factor), *column)).collect()
 }

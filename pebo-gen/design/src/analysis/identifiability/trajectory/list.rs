@@ -33,7 +33,7 @@ impl<'a> List<'a> {
     pub(super) fn add(&mut self, family: &Family) {
         if !family.observed.is_full() && !self.covers(family) {
             let Set { domain, condition } = &family.set;
-            self.state(self.problem.blind(condition.clone(), &family.observed), domain.clone());
+            self.state(self.problem.on(domain).blind(condition.clone(), &family.observed), domain.clone());
             self.refine(family);
         }
     }

@@ -45,7 +45,7 @@ impl ObservabilityProblem<'_> {
             // One statement for all of them, of which a listed one may hold.
             if let Some(family) = families.iter().find(|family| !list.covers(family)) {
                 let set = if families.len() == 1 { &family.set } else { &whole };
-                list.state(self.blind(set.condition.clone(), &family.observed), set.domain.clone());
+                list.state(self.on(&set.domain).blind(set.condition.clone(), &family.observed), set.domain.clone());
                 for family in &families {
                     list.refine(family);
                 }

@@ -337,3 +337,21 @@ fn a_row_without_zeros_excludes_those_of_the_determinant() {
                     f_y: {p: k/(V + A*s)*(c - A*v) + k/(V - B*s)*(B*v - d), q: k/(V - B*s)*(B*v - d), s: v}";
     assert_eq!(of(cylinder), ["the unknowns are identified without excitation by the inputs, even at rest"]);
 }
+
+#[test]
+fn combinations_span_what_is_identified_at_every_point() {
+    // With a rotor that stands still, `i*z2` and `i*z1 - z3`: a pivot of the speed says less.
+    let motor = "x: [K, R, T]\ny: [i, w]\nu: [v]\nf_x: {K: 0, R: 0, T: 0}\nf_y: {i: v - R*i - K*w, w: K*i - T}\n\
+                 phi: [K, R, T]";
+    let lines = of(motor);
+    assert!(
+        lines.contains(&"while the plant rests, only `i*z2 + w*z1`, `i*z1 - z3` is identified".to_owned()),
+        "{lines:?}"
+    );
+    // Any two of three say less where a component of the field is zero.
+    let field = "x: [a, b, c]\ny: [k, l, m]\nu: [p, q, r]\nf_x: {a: 0, b: 0, c: 0}\nphi: [a, b, c]\n\
+                 f_y: {k: l*(r - c) - m*(q - b), l: m*(p - a) - k*(r - c), m: k*(q - b) - l*(p - a)}";
+    let lines = of(field);
+    let at_rest = lines.iter().find(|line| line.starts_with("while the plant rests, only")).expect("a line");
+    assert_eq!(at_rest.matches("*z").count(), 6, "{lines:?}");
+}
