@@ -872,7 +872,11 @@ class Certificate:
         if self.motion.get("at rest"):
             self.at_rest("identified at rest", exceptions)
         for entry in blind:
-            self.blind(f"while {entry['while']}", entry)
+            # Where another statement says that more is hidden, or that it is open, this one is of the others.
+            own = len(entry.get("hidden", []))
+            special = [other for other in exceptions
+                       if other.get("zero") and len(other.get("hidden", [])) not in range(1, own + 1)]
+            self.blind(f"while {entry['while']}", entry, special)
 
     def at_rest(self, claim, exceptions):
         self.sets.all, full, listed = True, 0, 0
@@ -887,7 +891,7 @@ class Certificate:
             return self.say(claim, "FALSE", ": each equilibrium that was met is an exception")
         return self.say(claim, *(("holds", f" at {full} points") if full else ("not checked", ": no point was met")))
 
-    def blind(self, claim, entry):
+    def blind(self, claim, entry, special):
         """On the trajectories of a condition some directions are hidden, and these combinations are identified."""
         plant, unknowns = self.plant, self.z if self.is_linear else [NAMES[name] for name in self.derived["eta"]]
         hidden = [[plant.valued(e).xreplace(self.at_start) for e in formulas(d)] for d in entry.get("hidden", [])]
@@ -896,7 +900,9 @@ class Certificate:
             for e in formulas(entry.get("identified", []))
         ]
         looked = 0
-        for point, rows in self.sets.of(entry):
+        for point, rows in self.sets.of(entry, special):
+            if any(self.sets.holds(other, point) for other in special):
+                continue
             try:
                 values, known = rows.at(point, self.width)
                 directions = [[value(e, point) for e in direction] for direction in hidden]

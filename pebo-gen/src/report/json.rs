@@ -161,6 +161,9 @@ struct BlindReport {
     /// The number of other functions of the unknowns that are observable.
     functions: usize,
     hidden: Vec<Vec<String>>,
+    /// What is identified of functions of theta determines theta near almost every value.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    determines_theta: bool,
 }
 
 /// `Phi_1' Phi_1` and its determinant; `positive` if that is proved on the whole assumed domain.
@@ -365,6 +368,7 @@ fn blind(plant: &Plant, blind: &BlindTrajectory) -> BlindReport {
         seen: printed(&plant.arena, &seen),
         functions: of_states.len(),
         hidden: matrix(&plant.arena, &blind.hidden),
+        determines_theta: blind.determines_theta,
     }
 }
 

@@ -335,12 +335,15 @@ pub struct BlindTrajectory {
     pub identifiable: Vec<Expr>,
     /// Unobservable directions: none where it is undecided.
     pub hidden: Vec<Vec<Expr>>,
+    /// True if the unknowns are functions of theta, and what is identified of them determines theta near almost every
+    /// value.
+    pub determines_theta: bool,
 }
 
 impl BlindTrajectory {
     /// Trajectories on which the rank is undecided.
     pub(in crate::analysis) fn undecided(condition: TrajectoryCondition) -> Self {
-        Self { condition, identifiable: Vec::new(), hidden: Vec::new() }
+        Self { condition, identifiable: Vec::new(), hidden: Vec::new(), determines_theta: false }
     }
 }
 

@@ -14,7 +14,7 @@ use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
 use super::singular::{Volume, ZeroSet};
 use super::trajectory;
 use super::undecided::open;
-use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, Regression, Verdict};
+use crate::analysis::design::{Cascade, Claim, Excitation, Identifiability, Verdict};
 use crate::analysis::left_inverse::checking::at_phi;
 
 /// An answer where all formulas are analytic.
@@ -72,7 +72,7 @@ pub(super) fn where_analytic(problem: &ObservabilityProblem<'_>, found: &mut Vec
     }
     // A regression that does not identify functions of theta may identify theta.
     if !regression.is_linear(plant)
-        && let Some(doubt) = of_theta(plant, domain, &observed.stack, regression, direction)
+        && let Some(doubt) = of_theta(problem, &observed.stack, direction)
     {
         found.push(doubt);
         return Claim { verdict: Verdict::Undecided, result: None }.into();
@@ -86,20 +86,10 @@ pub(super) fn where_analytic(problem: &ObservabilityProblem<'_>, found: &mut Vec
 
 /// The reason why theta itself may be identifiable although its functions are not; none where a direction of theta is
 /// provably unobservable in the rows, which determine all derivatives.
-fn of_theta(
-    plant: &Plant,
-    domain: &Domain,
-    stack: &[Vec<Expr>],
-    regression: &Regression,
-    direction: &[Expr],
-) -> Option<Diagnostic> {
+fn of_theta(problem: &ObservabilityProblem<'_>, stack: &[Vec<Expr>], direction: &[Expr]) -> Option<Diagnostic> {
+    let &ObservabilityProblem { plant, domain, regression, .. } = problem;
     let arena = &plant.arena;
-    let slope = |row: &Vec<Expr>, theta: Symbol| {
-        arena
-            .sum(row.iter().zip(&regression.eta).map(|(factor, eta)| arena.mul(*factor, arena.derivative(*eta, theta))))
-    };
-    let rows: Vec<Vec<Expr>> =
-        stack.iter().map(|row| plant.theta.iter().map(|theta| slope(row, *theta)).collect()).collect();
+    let rows = problem.rows_of_theta(stack);
     let apart = full_rank(arena, domain, &rows, plant.theta.len());
     if !apart && null_vectors(arena, domain, &rows, plant.theta.len()).is_ok_and(|vectors| !vectors.is_empty()) {
         return None;

@@ -5,7 +5,7 @@
 //! themselves are the combinations, perhaps more of them than their rank: of a field that is seen in three components,
 //! `m x (z1, z2, z3)` has three, and any two of them say less where the third component of m is zero.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::forms::tidy::{operations, shortest};
 use pebo_cas::graph::conditions::Regularity;
@@ -15,14 +15,21 @@ use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 use super::problem::{Observation, free_columns};
 use super::singular::take_common;
 
-/// The combinations, in these symbols of the unknowns.
-pub(super) fn combinations(arena: &Arena, domain: &Domain, symbols: &[Symbol], observed: &Observation) -> Vec<Expr> {
+/// The combinations, in these symbols of the unknowns. With unmeasured states for factors, combinations are only counted:
+/// then they are a basis.
+pub(super) fn combinations(
+    arena: &Arena,
+    domain: &Domain,
+    (symbols, unmeasured): (&[Symbol], &BTreeSet<Symbol>),
+    observed: &Observation,
+) -> Vec<Expr> {
     let basis = basis(arena, domain, symbols.len(), &observed.hidden);
     let is_basis_throughout = basis
         .iter()
         .all(|(pivot, row)| domain.grants(arena, (*pivot, Relation::NonZero)) && have_values(arena, domain, row));
     let rows: Vec<Vec<Expr>> = basis.into_iter().map(|(_, row)| row).collect();
     let shown = if is_basis_throughout { None } else { as_observed(arena, domain, &rows, &observed.stack) };
+    let shown = shown.filter(|shown| !shown.iter().flatten().any(|factor| arena.depends_on(*factor, unmeasured)));
     let unknowns: Vec<Expr> = symbols.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
     let shorter = |form: Expr| [form, arena.neg(form)].into_iter().min_by_key(|form| arena.print(*form).len());
     shown.unwrap_or(rows).iter().filter_map(|row| shorter(arena.dot(row, &unknowns))).collect()
@@ -68,10 +75,14 @@ fn as_observed(arena: &Arena, domain: &Domain, basis: &[Vec<Expr>], stack: &[Vec
     let unknowns = basis.first()?.len();
     let known = arena.symbols_of(&basis.concat());
     let mut rows: Vec<Vec<Expr>> = stack.to_vec();
+    rows.retain(|row| row.iter().any(|entry| !arena.is_zero(*entry)));
     for row in &mut rows {
         take_common(arena, row);
+        let numbers: Vec<Rational> = row.iter().filter_map(|entry| number(arena, *entry)).collect();
+        if let Some(inverse) = numbers.iter().min().and_then(Rational::recip) {
+            row.iter_mut().for_each(|entry| *entry = arena.scale(*entry, &inverse));
+        }
     }
-    rows.retain(|row| row.iter().any(|entry| !arena.is_zero(*entry)));
     rows.sort_by_cached_key(|row| row.iter().map(|entry| operations(arena, *entry)).sum::<usize>());
     let mut shown: Vec<Vec<Expr>> = Vec::new();
     for row in rows {
@@ -81,6 +92,15 @@ fn as_observed(arena: &Arena, domain: &Domain, basis: &[Vec<Expr>], stack: &[Vec
     }
     let is_known = arena.symbols_of(&shown.concat()).is_subset(&known);
     (is_known && proved_rank(arena, domain, &shown, unknowns) == basis.len()).then_some(shown)
+}
+
+/// The size of the number in a factor; none for zero.
+fn number(arena: &Arena, factor: Expr) -> Option<Rational> {
+    match arena.node(factor) {
+        Node::Number(number) => Some(number.abs()).filter(|size| !size.is_zero()),
+        Node::Product(product) => Some(product.coefficient.abs()),
+        _ => Some(Rational::ONE),
+    }
 }
 
 /// Tests whether a row is a combination of others with coefficients that have values on the whole domain.

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
-use pebo_cas::linear::rank::{null_vectors, proved_rank};
+use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
 
@@ -153,8 +153,26 @@ impl<'a> ObservabilityProblem<'a> {
     /// The statement on trajectories that hide unknowns.
     pub(super) fn blind(&self, condition: TrajectoryCondition, observed: &Observation) -> BlindTrajectory {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
-        let identifiable = identified::combinations(&self.plant.arena, self.domain, symbols, observed);
-        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone() }
+        let identifiable =
+            identified::combinations(&self.plant.arena, self.domain, (symbols, &self.plant.hidden()), observed);
+        let is_of_theta = !self.regression.is_linear(self.plant);
+        let determines_theta = is_of_theta && self.determines_theta(&observed.stack);
+        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone(), determines_theta }
+    }
+
+    /// Rows of theta near a value of it, by those of the unknowns that are functions of it.
+    pub(super) fn rows_of_theta(&self, stack: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+        let (arena, theta) = (&self.plant.arena, &self.plant.theta);
+        let slope = |row: &[Expr], theta: Symbol| {
+            let slopes: Vec<Expr> = self.regression.eta.iter().map(|eta| arena.derivative(*eta, theta)).collect();
+            arena.dot(row, &slopes)
+        };
+        stack.iter().map(|row| theta.iter().map(|theta| slope(row, *theta)).collect()).collect()
+    }
+
+    /// Tests whether rows of functions of theta determine it near almost every value.
+    fn determines_theta(&self, stack: &[Vec<Expr>]) -> bool {
+        full_rank(&self.plant.arena, self.domain, &self.rows_of_theta(stack), self.plant.theta.len())
     }
 }
 

@@ -66,7 +66,11 @@ impl ObservabilityProblem<'_> {
                 let known = [set.condition.zeros.as_slice(), &[zero]].concat();
                 let named = |_: &[Expr], special: Vec<Expr>| {
                     let new = special.into_iter().filter(|equation| !known.contains(equation));
-                    set.condition.zeros.iter().copied().chain(new).chain([zero]).collect()
+                    let mut zeros = set.condition.zeros.clone();
+                    zeros.extend(new);
+                    zeros.retain(|known| *known != zero);
+                    zeros.push(zero);
+                    zeros
                 };
                 let sets = self.subsets(set, &[zero], named)?;
                 sets.into_iter().map(|there| self.observe(there, held, false)).collect()

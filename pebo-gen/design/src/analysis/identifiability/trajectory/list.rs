@@ -5,11 +5,15 @@ use std::collections::BTreeSet;
 use crate::analysis::design::{BlindTrajectory, Still, TrajectoryCondition};
 use pebo_cas::domain::cells::Side;
 use pebo_cas::domain::zero::decide;
+use pebo_cas::forms::tidy::operations_of;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::family::{Family, Set};
 use crate::analysis::identifiability::problem::ObservabilityProblem;
+
+/// Operations of a condition up to which it is named where nothing was decided: in a longer one a reader finds nothing.
+const MOST_READ: usize = 60;
 
 /// Statements on trajectories.
 pub(in crate::analysis::identifiability) struct List<'a> {
@@ -99,6 +103,10 @@ impl<'a> List<'a> {
     pub(in crate::analysis::identifiability) fn leave_open(&mut self, set: &Set, zero: Option<Expr>) {
         let mut condition = set.condition.clone();
         condition.zeros.extend(zero);
+        if operations_of(&self.problem.plant.arena, &condition.zeros) > MOST_READ {
+            self.is_complete = false;
+            return;
+        }
         let is_known = |blind: &BlindTrajectory| !blind.is_decided() && blind.condition.zeros == condition.zeros;
         if self.known.iter().any(is_known) {
             return;

@@ -355,3 +355,13 @@ fn combinations_span_what_is_identified_at_every_point() {
     let at_rest = lines.iter().find(|line| line.starts_with("while the plant rests, only")).expect("a line");
     assert_eq!(at_rest.matches("*z").count(), 6, "{lines:?}");
 }
+
+#[test]
+fn what_is_identified_of_functions_of_theta_may_determine_theta() {
+    // The constant b is not told from the square of the momentum a, which a rate of its own shows.
+    let orbit = "x: [a, b]\ny: [r, s, v]\nu: [f]\nassume: [r > 0, b > 0]\nf_x: {a: f*r, b: 0}\n\
+                 f_y: {r: v, s: a/r^2, v: a^2/r^3 - b/r^2}\nphi: [a, b]";
+    let lines = of(orbit);
+    let line = lines.iter().find(|line| line.contains("only")).expect("a line");
+    assert!(line.ends_with("is identified, which determines theta near almost every value"), "{lines:?}");
+}

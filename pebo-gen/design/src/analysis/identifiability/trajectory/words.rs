@@ -107,7 +107,8 @@ impl BlindTrajectory {
         }
         let identifiable =
             if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
-        format!("while {condition}, {identifiable} is identified")
+        let rest = if self.determines_theta { ", which determines theta near almost every value" } else { "" };
+        format!("while {condition}, {identifiable} is identified{rest}")
     }
 }
 
