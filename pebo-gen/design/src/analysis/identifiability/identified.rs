@@ -80,7 +80,9 @@ fn as_observed(arena: &Arena, domain: &Domain, basis: &[Vec<Expr>], stack: &[Vec
         take_common(arena, row);
         let numbers: Vec<Rational> = row.iter().filter_map(|entry| number(arena, *entry)).collect();
         if let Some(inverse) = numbers.iter().min().and_then(Rational::recip) {
-            row.iter_mut().for_each(|entry| *entry = arena.scale(*entry, &inverse));
+            for entry in row {
+                *entry = arena.scale(*entry, &inverse);
+            }
         }
     }
     rows.sort_by_cached_key(|row| row.iter().map(|entry| operations(arena, *entry)).sum::<usize>());
