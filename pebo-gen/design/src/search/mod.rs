@@ -443,6 +443,7 @@ impl Attempts<'_> {
         if let Ok(connection) = Connection::of(problem, Rate::Affine) {
             outputs.extend(connection.factors(problem));
         }
+        outputs.extend(functions::waves(problem));
         for degree in 1..=2 {
             if self.is_over() {
                 return;

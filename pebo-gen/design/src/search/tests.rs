@@ -322,3 +322,12 @@ fn a_transform_without_exceptions_comes_before_a_plain_cascade_with_one() {
     assert!(noisier.phi == plain.plant.transform() && noisier.unfiltered.is_empty());
     assert_eq!(noisier.conditions.len(), 1);
 }
+
+#[test]
+fn a_frame_may_turn_with_an_angle_that_no_rate_holds() {
+    // A body around a centre of unknown mass: its velocity in axes that do not turn.
+    let orbit = "x: [v, o, m]\ny: [r, s]\nu: [f, g]\nassume: [r > 0, m > 0]\n\
+                 f_x: {v: r*o^2 - m/r^2 + f, o: (g - 2*v*o)/r, m: 0}\nf_y: {r: v, s: o}";
+    let found = solve(&plant(orbit), None).candidates.swap_remove(0);
+    assert!(found.is_full() && found.derivation.class == Class::Gpebo, "{:?}", found.formulas());
+}

@@ -127,8 +127,14 @@ impl TrajectoryCondition {
             Still::Plant => Some("the plant rests".to_owned()),
         };
         let sides = (!self.sides.is_empty()).then(|| on_sides(plant, &self.sides));
-        let zeros = self.zeros.iter().map(|zero| format!("`{}`", equation(plant, *zero)));
-        sides.into_iter().chain(still).chain(zeros).collect::<Vec<_>>().join(" and ")
+        let mut parts: Vec<String> = sides.into_iter().chain(still).collect();
+        for zero in &self.zeros {
+            let part = format!("`{}`", equation(plant, *zero));
+            if !parts.contains(&part) {
+                parts.push(part);
+            }
+        }
+        parts.join(" and ")
     }
 }
 
