@@ -108,6 +108,13 @@ fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
             (Err(_), Some(unsolved)) => Err(unsolved),
             (normal, _) => normal,
         };
+        // With the values of symbols as formulas of the others in their places.
+        let by_values = arena.substitute(expr, &domain.manifold.given_values(arena));
+        if normal.is_err() && by_values != expr {
+            let field = Field::of_long_sums(arena, &domain.facts, &[by_values]);
+            let is_zero = field.and_then(|field| Ok(field.fraction(by_values)?.is_zero()));
+            normal = if is_zero == Ok(true) { Ok(()) } else { normal };
+        }
     }
     match normal {
         Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,

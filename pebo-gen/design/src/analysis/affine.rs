@@ -29,7 +29,15 @@ fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Op
     let arena = &plant.arena;
     let places = connected(plant, expr, basis);
     let some: Vec<Expr> = places.iter().map(|place| basis[*place]).collect();
-    let Some(found) = combine_on(arena, domain, expr, &some, &plant.hidden())? else { return Ok(None) };
+    let combined = |expr: Expr| combine_on(arena, domain, expr, &some, &plant.hidden());
+    let known = || Some(plant.with_known_functions(expr)).filter(|known| *known != expr);
+    let found = match combined(expr) {
+        Ok(Some(found)) => found,
+        other => match known().map(combined).transpose() {
+            Ok(Some(Some(found))) => found,
+            _ => return other.map(|_| None),
+        },
+    };
     let mut row = vec![arena.zero(); basis.len()];
     for (place, coefficient) in places.into_iter().zip(found) {
         row[place] = coefficient;

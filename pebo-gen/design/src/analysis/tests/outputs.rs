@@ -116,3 +116,18 @@ fn values_that_are_not_linear_stand_in_combinations_that_are() {
     let identified = derivation.identifiability.result.unwrap();
     assert!(identified.kind == Excitation::Instant && identified.singular_where.is_empty());
 }
+
+#[test]
+fn functions_whose_values_outputs_give_are_known_in_rates() {
+    let resolver = "x: [q, v, l]\ny: [c, s]\nu: [w]\nangles: {q: 2*pi}\nf_x: {q: v, v: w - l, l: 0}\n\
+                    g_y: {c: cos(q), s: sin(q)}\nphi: [v, l, cos(q), sin(q)]";
+    let (_, derivation) = derive(resolver);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{:?}", derivation.diagnostics);
+    // The value times a parameter, with an offset.
+    let diode = "parameters: {k: 2}\nx: [a, b]\ny: [i]\nu: [w]\nf_x: {a: b, b: w}\ng_y: {i: k*(exp(a) - 1)}\n\
+                 phi: [b, exp(a)]";
+    let (plant, derivation) = derive(diode);
+    let cascade = derivation.cascade.result.expect("proved");
+    let lambda = cascade.lambda.expect("generalised");
+    assert_eq!(plant.arena.print(lambda[1][0]), "(k + i)/k");
+}
