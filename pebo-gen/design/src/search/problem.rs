@@ -71,7 +71,7 @@ impl<'a> Problem<'a> {
 
     /// The rate of a function of states and outputs.
     pub(super) fn rate(&self, expr: Expr) -> Expr {
-        self.plant.with_known_functions(self.arena.directional(expr, &self.rates))
+        self.arena.directional(expr, &self.rates)
     }
 
     /// The rates of the outputs that a transform may hold.

@@ -223,10 +223,6 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    let known = plant.with_known_functions(rate);
-    if !arena.depends_on(known, &hidden) && decide(arena, arena.sub(rate, known), domain).is_zero() {
-        return Component::Free(proved_shortest(arena, domain, known));
-    }
     bound(plant, domain, RateForm { rate, printed: tidied, varying: None })
         .or_else(|| free_on_cells(plant, domain, rate))
         .unwrap_or(Component::Open(Obstacle::NoWitness))
