@@ -155,7 +155,11 @@ impl<'a> ObservabilityProblem<'a> {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
         let identifiable =
             identified::combinations(&self.plant.arena, self.domain, (symbols, &self.plant.hidden()), observed);
-        let is_of_theta = !self.regression.is_linear(self.plant);
+        // At an equilibrium, or where a formula of states is zero, theta has not any value.
+        let hidden = self.plant.hidden();
+        let is_any = condition.still != Still::Plant
+            && !condition.zeros.iter().any(|zero| self.plant.arena.depends_on(*zero, &hidden));
+        let is_of_theta = is_any && !self.regression.is_linear(self.plant);
         let determines_theta = is_of_theta && self.determines_theta(&observed.stack);
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone(), determines_theta }
     }

@@ -358,10 +358,13 @@ fn combinations_span_what_is_identified_at_every_point() {
 
 #[test]
 fn what_is_identified_of_functions_of_theta_may_determine_theta() {
-    // The constant b is not told from the square of the momentum a, which a rate of its own shows.
-    let orbit = "x: [a, b]\ny: [r, s, v]\nu: [f]\nassume: [r > 0, b > 0]\nf_x: {a: f*r, b: 0}\n\
-                 f_y: {r: v, s: a/r^2, v: a^2/r^3 - b/r^2}\nphi: [a, b]";
-    let lines = of(orbit);
-    let line = lines.iter().find(|line| line.contains("only")).expect("a line");
+    // A cube that does not move is one function of three: it determines the state all the same.
+    let cube = "x: [a]\ny: [q]\nu: [v]\nf_x: {a: v}\nf_y: {q: a^3}\nphi: [a]";
+    let lines = of(cube);
+    let line = lines.iter().find(|line| line.starts_with("while `v = 0`, only")).expect("a line");
     assert!(line.ends_with("is identified, which determines theta near almost every value"), "{lines:?}");
+    // At rest a = 0, and with it the factor by which b is seen.
+    let still = "x: [a, b]\ny: [q, v]\nu: [f]\nf_x: {a: f, b: 0}\nf_y: {q: a, v: a*b + a*q*b^2}\nphi: [a, b]";
+    let lines = of(still);
+    assert!(!lines.iter().any(|line| line.contains("rests") && line.contains("determines")), "{lines:?}");
 }
