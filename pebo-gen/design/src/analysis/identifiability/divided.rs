@@ -16,7 +16,8 @@ use super::analytic::{AnalyticDecision, where_analytic};
 use super::crossing::{CellRows, all_identified, driven};
 use super::flow::varies;
 use super::joined::Joined;
-use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
+use super::observation::Observation;
+use super::problem::{ObservabilityProblem, SHARE_OF_REMARKS};
 use super::special;
 use super::trajectory::{List, assuming};
 use crate::analysis::design::{

@@ -12,7 +12,7 @@ use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::linear::rank::{null_vectors, proved_rank};
 use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
-use super::problem::{Observation, free_columns};
+use super::observation::{Observation, free_columns};
 use super::singular::take_common;
 
 /// The combinations, in these symbols of the unknowns. With unmeasured states for factors, combinations are only counted:

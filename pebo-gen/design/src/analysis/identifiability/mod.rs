@@ -17,6 +17,7 @@ mod flow;
 mod identified;
 mod joined;
 mod never;
+mod observation;
 mod problem;
 mod regimes;
 mod singular;

@@ -14,6 +14,7 @@ use pebo_cas::{Arena, Domain, Expr, Symbol};
 
 use super::flow::{Flow, effective, without_psi};
 use super::identified;
+use super::observation::Observation;
 
 /// The share of the remaining budget for each remark on a verdict: remarks do not use up the budget of the other claims.
 pub(super) const SHARE_OF_REMARKS: u64 = 8;
@@ -29,24 +30,6 @@ pub(super) struct ObservabilityProblem<'a> {
     pub(super) cascade: &'a Cascade,
     pub(super) regression: &'a Regression,
     pub(super) left_inverse: Option<&'a LeftInverse>,
-}
-
-/// The observations of the rows with their derivatives on a trajectory.
-#[derive(Clone, Default)]
-pub(super) struct Observation {
-    /// Rows of the same rank as all derivatives, with a fundamental matrix at its initial value.
-    pub(super) stack: Vec<Vec<Expr>>,
-    /// Directions that are unobservable in them.
-    pub(super) hidden: Vec<Vec<Expr>>,
-    /// True if they are unobservable for the given values of the parameters alone.
-    pub(super) is_special: bool,
-}
-
-impl Observation {
-    /// Tests whether all unknowns are identifiable.
-    pub(super) fn is_full(&self) -> bool {
-        self.hidden.is_empty()
-    }
 }
 
 impl<'a> ObservabilityProblem<'a> {
@@ -214,17 +197,4 @@ fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Ve
         }
     }
     rows
-}
-
-/// The column of each hidden direction in which it has one, and the others zero: the rank is that of the other columns.
-pub(super) fn free_columns(arena: &Arena, hidden: &[Vec<Expr>], unknowns: usize) -> Vec<Option<usize>> {
-    let own = |index: usize| {
-        (0..unknowns).find(|&column| {
-            let entry = |(other, vector): (usize, &Vec<Expr>)| {
-                vector[column] == if other == index { arena.one() } else { arena.zero() }
-            };
-            hidden.iter().enumerate().all(entry)
-        })
-    };
-    (0..hidden.len()).map(own).collect()
 }

@@ -14,7 +14,8 @@ use pebo_cas::forms::tidy::shortest;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Symbol};
 
-use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation};
+use crate::analysis::identifiability::observation::Observation;
+use crate::analysis::identifiability::problem::ObservabilityProblem;
 
 /// A set of trajectories: where they remain, and in words.
 #[derive(Clone)]

@@ -11,7 +11,8 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::family::Family;
-use crate::analysis::identifiability::problem::{ObservabilityProblem, Observation, free_columns};
+use crate::analysis::identifiability::observation::{Observation, free_columns};
+use crate::analysis::identifiability::problem::ObservabilityProblem;
 
 impl ObservabilityProblem<'_> {
     pub(super) fn parameters(&self) -> BTreeSet<Symbol> {

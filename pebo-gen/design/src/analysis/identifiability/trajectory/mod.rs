@@ -24,7 +24,8 @@ use std::collections::BTreeSet;
 use crate::analysis::design::{Still, Trajectories};
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
-use super::problem::{ObservabilityProblem, Observation, SHARE_OF_REMARKS};
+use super::observation::Observation;
+use super::problem::{ObservabilityProblem, SHARE_OF_REMARKS};
 use family::Family;
 
 pub(super) use list::List;
