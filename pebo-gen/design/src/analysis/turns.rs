@@ -30,7 +30,10 @@ fn refuse(plant: &Plant, output: Symbol) -> Diagnostic {
         format!("the turn of `{name}` is not known, and the states depend on it"),
     )
     .label(format!("samples of `{name}` are read within this period"))
-    .note("a period more in it is not shown to change each state by whole periods of its own, and nothing else")
+    .note(
+        "a period more in it, with states moved by whole periods of their own, is not shown to leave equations and \
+         assumptions as they are",
+    )
     .help(format!(
         "leave out `{name}` if its samples do not wrap, or declare the period by which a state turns with it"
     ))

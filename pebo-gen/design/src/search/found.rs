@@ -36,8 +36,8 @@ pub enum SearchVerdict {
     Found,
     /// It is proved that there is none at all, by a symmetry, or none of the classes that the bounds name: no smooth one
     /// with a plain cascade, and if a generalised one would do, none that is affine in x. Other generalised ones were
-    /// looked for and not found; where rates are no polynomials in the states, or a state is an unknown constant, which suggests other functions,
-    /// the search is undecided instead.
+    /// looked for and not found; where rates are no polynomials in the states, or a state is an unknown constant, which
+    /// suggests other functions, the search is undecided instead.
     None,
     /// Neither.
     Undecided,

@@ -75,3 +75,35 @@ fn draw(point: u64, variable: u32) -> i64 {
     let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 57;
     i64::try_from(mixed).unwrap_or(0) - 64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tower::Field;
+    use crate::{Arena, Expr, Facts};
+
+    /// Points refute a sign only where the facts leave both: what a fact proves is not given up.
+    #[test]
+    fn points_have_both_signs_only_where_the_facts_do() {
+        let arena = Arena::new();
+        let [p, q, r] = ["p", "q", "r"].map(|name| arena.variable(name));
+        let difference = arena.sub(p, q);
+        let are_both = |fact: Option<Expr>, expr: Expr| {
+            let mut facts = Facts::new();
+            if let Some(fact) = fact {
+                facts.assume(fact, Relation::Positive);
+            }
+            let roots = [&[expr], fact.as_slice()].concat();
+            let field = Field::over(&arena, &facts, &roots).unwrap();
+            let poly = field.fraction(expr).unwrap().num;
+            field.signs().learn().unwrap();
+            field.signs().are_both(&poly).unwrap()
+        };
+        assert!(are_both(None, difference) && are_both(Some(r), difference));
+        assert!(!are_both(Some(difference), difference));
+        assert!(!are_both(Some(p), arena.add(arena.mul(p, p), p)));
+        assert!(!are_both(None, arena.add(arena.mul(p, p), arena.mul(q, q))));
+        // A root is no free value.
+        assert!(!are_both(None, arena.sub(arena.sqrt(arena.mul(p, p)), p)));
+    }
+}

@@ -131,3 +131,15 @@ fn functions_whose_values_outputs_give_are_known_in_rates() {
     let lambda = cascade.lambda.expect("generalised");
     assert_eq!(plant.arena.print(lambda[1][0]), "(k + i)/k");
 }
+
+#[test]
+fn a_turn_that_the_assumptions_decide_is_named_with_the_period_to_declare() {
+    let plant = |lines: &str| {
+        format!("x: [b]\ny: [s, c]\nu: [w]\n{lines}\nf_x: {{b: w}}\nf_y: {{s: sin(b), c: cos(b)}}\nphi: [b]")
+    };
+    let (_, derivation) = derive(&plant("assume: [-1 < b < 1]"));
+    let help = derivation.diagnostics[0].help.as_ref().expect("what to declare");
+    assert!(derivation.outcome == Outcome::Undecided && help.contains("`angles: {b: 2*pi}`"), "{help}");
+    let (_, declared) = derive(&plant("assume: [-1 < b < 1]\nangles: {b: 2*pi}"));
+    assert_eq!(declared.outcome, Outcome::Accepted);
+}
