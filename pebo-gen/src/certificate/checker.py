@@ -874,8 +874,8 @@ class Certificate:
         for entry in blind:
             # Where another statement says that more is hidden, or that it is open, this one is of the others.
             own = len(entry.get("hidden", []))
-            special = [other for other in exceptions
-                       if other.get("zero") and len(other.get("hidden", [])) not in range(1, own + 1)]
+            special = [other for other in exceptions if other is not entry
+                       and other.get("zero") and len(other.get("hidden", [])) not in range(1, own + 1)]
             self.blind(f"while {entry['while']}", entry, special)
 
     def at_rest(self, claim, exceptions):
