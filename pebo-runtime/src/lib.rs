@@ -111,8 +111,8 @@ mod samples;
 mod within;
 
 pub use estimator::{
-    Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
-    RegressorExtension, Response, Uncertain,
+    AdaptiveLeastSquares, Bounded, Drem, Estimator, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares,
+    NormalisedGradient, RegressorExtension, Response, Uncertain,
 };
 pub use extension::{Drift, Extension, Flow, Fundamental, Integrator, Turn};
 pub use fault::Fault;

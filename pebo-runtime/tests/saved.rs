@@ -2,9 +2,9 @@
 
 use pebo_runtime::nalgebra::{Matrix1, SMatrix, SVector, Vector1};
 use pebo_runtime::{
-    Bounded, Drem, Estimator, Fault, Filter, FilteredRegression, FiniteTime, Flow, Gradient, Hold, Integrator,
-    Kreisselmeier, LeastSquares, Model, NormalisedGradient, Observer, Regression, RegressionOperator, Response,
-    SampledRegression, Sides, State, WindowedRegression,
+    AdaptiveLeastSquares, Bounded, Drem, Estimator, Fault, Filter, FilteredRegression, FiniteTime, Flow, Gradient,
+    Hold, Integrator, Kreisselmeier, LeastSquares, Model, NormalisedGradient, Observer, Regression, RegressionOperator,
+    Response, SampledRegression, Sides, State, WindowedRegression,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -100,6 +100,7 @@ fn every_estimator_and_regression_continues() {
     continues(&NormalisedGradient::new(gradient, 2.0).unwrap(), &filtered);
     continues(&squares, &filtered);
     continues(&squares.with_process_noise(&one).unwrap(), &SampledRegression::new(&one).unwrap());
+    continues(&AdaptiveLeastSquares::new(squares, &one).unwrap(), &SampledRegression::new(&one).unwrap());
     continues(&drem, &filtered);
     continues(&Drem::new(Response::<_, _, 1, 1>::new(squares).unwrap(), &one).unwrap(), &filtered);
     continues(&FiniteTime::tracking(drem, 0.1, 0.3).unwrap(), &filtered);

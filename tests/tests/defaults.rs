@@ -16,11 +16,11 @@ fn run(text: &str, seed: u64) -> Summary {
 /// Of each kind of observer, cascade and regression at least one; those that take few samples.
 const QUICK: &[&str] = &[
     "models/battery",
-    "models/bearing_only",
     "models/bicycle",
     "models/boost_resistive",
     "models/reactor",
     "plants/battery",
+    "plants/bearing_only",
     "plants/boost_resistive",
     "plants/dc_motor_load",
     "plants/wind_turbine",

@@ -89,7 +89,8 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// Names that an emitted module declares or imports, and those of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 61] = [
+pub(super) const TYPES: [&str; 62] = [
+    "AdaptiveLeastSquares",
     "Bounded",
     "Default",
     "Drem",

@@ -91,14 +91,15 @@ impl<S: Real, const N: usize> Information<S, N> {
         self.rotate::<false>(row, value, weight);
     }
 
-    /// Adds the equation `row * d = value` with the weight 1; returns the growth of the least sum of weighted squares.
-    pub(crate) fn absorb_and_judge(&mut self, row: &SVector<S, N>, value: S) -> S {
-        let (rest, weight) = self.rotate::<false>(row, value, S::one());
-        weight * rest * rest
+    /// The same; returns what the equation says beyond those before it, value and weight: the least sum of weighted
+    /// squares grows by `weight * value^2`.
+    #[inline]
+    pub(crate) fn absorb_with_rest(&mut self, row: &SVector<S, N>, value: S, weight: S) -> (S, S) {
+        self.rotate::<false>(row, value, weight)
     }
 
-    /// [`absorb`](Self::absorb), returning the rest of the equation: value and weight. `VAGUE` if weights may be zero
-    /// before: a constant, as each step of an estimator comes here.
+    /// [`absorb_with_rest`](Self::absorb_with_rest). `VAGUE` if weights may be zero before: a constant, as each step of an
+    /// estimator comes here.
     #[inline]
     fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) -> (S, S) {
         let (mut row, mut value, mut weight) = (*row, value, weight);

@@ -102,10 +102,27 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
     pub fn information(&self) -> &Information<S, NE> {
         &self.information
     }
-}
 
-impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSquares<S, NE> {
-    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
+    /// The unknown has wandered: `P` gains this diagonal times `dt`.
+    #[inline]
+    pub(super) fn diffuse(&mut self, noise: &SVector<S, NE>, dt: S) {
+        for (component, &intensity) in noise.iter().enumerate() {
+            if intensity > S::zero() && dt > S::zero() {
+                self.information.diffuse(component, intensity * dt);
+            }
+        }
+    }
+
+    /// A step; `seen` gets of each row what it says beyond the estimate and the rows before it, the weight of that, and its
+    /// share of the row's own weight.
+    #[inline]
+    pub(super) fn take<const NR: usize>(
+        &mut self,
+        regressor: &SMatrix<S, NR, NE>,
+        regressand: &SVector<S, NR>,
+        dt: S,
+        mut seen: impl FnMut(usize, S, S, S),
+    ) -> Result<(), Fault> {
         let share = self.forgetting.over(dt);
         if share.lost == S::one() {
             self.information = self.floor;
@@ -113,17 +130,21 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
             self.information.scale(S::one() - share.lost);
             self.information.absorb_information(&self.floor, share.lost);
         }
-        for (component, &intensity) in self.noise.iter().enumerate() {
-            if intensity > S::zero() {
-                self.information.diffuse(component, intensity * dt);
-            }
-        }
+        let noise = self.noise;
+        self.diffuse(&noise, dt);
         let innovation = regressand - regressor * self.theta.value();
-        for (row, &error) in regressor.row_iter().zip(innovation.iter()) {
-            self.information.absorb(&row.transpose(), error, share.taken);
+        for (index, (row, &error)) in regressor.row_iter().zip(innovation.iter()).enumerate() {
+            let (rest, weight) = self.information.absorb_with_rest(&row.transpose(), error, share.taken);
+            seen(index, rest, weight, weight / share.taken);
         }
         self.theta.add(&self.information.take_solution()?);
         Ok(())
+    }
+}
+
+impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSquares<S, NE> {
+    fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
+        self.take(regressor, regressand, dt, |_, _, _, _| {})
     }
 
     fn estimate(&self) -> SVector<S, NE> {
@@ -157,12 +178,8 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
 
 impl<S: Real, const NE: usize> Uncertain<S, NE> for LeastSquares<S, NE> {
     fn covariance_root(&self, dt: S) -> Option<SMatrix<S, NE, NE>> {
-        let mut information = self.information;
-        for (component, &intensity) in self.noise.iter().enumerate() {
-            if intensity > S::zero() && dt > S::zero() {
-                information.diffuse(component, intensity * dt);
-            }
-        }
-        information.covariance_root()
+        let mut wandered = *self;
+        wandered.diffuse(&self.noise, dt);
+        wandered.information.covariance_root()
     }
 }

@@ -5,6 +5,7 @@
 //! | [`Gradient`], [`NormalisedGradient`] | persistent excitation | at the pace of the gain |
 //! | [`LeastSquares`], `beta = 0` | excitation during an interval, up to the weight of the start | ever more slowly |
 //! | [`LeastSquares`], `beta > 0` | the same | within `1/beta` |
+//! | [`AdaptiveLeastSquares`] | the same | once some forty samples contradict it, at the pace of the guessed noise |
 //! | [`Drem`] of [`Kreisselmeier`], `l > 0` | persistent excitation, each component by itself | within `1/l` and the gain's time |
 //! | [`Drem`] of [`Kreisselmeier`], `l = 0` | excitation during an interval | never |
 //! | [`Drem`] of the [`Response`] of a [`Gradient`] or [`LeastSquares`] | excitation during an interval | as that estimator |
@@ -14,6 +15,7 @@
 //!
 //! Every one is stable at any gain and step. To add one, implement [`Estimator`] or, for DREM, [`RegressorExtension`].
 
+mod adaptive;
 mod bounded;
 mod cramer;
 mod drem;
@@ -24,6 +26,7 @@ mod information;
 mod least_squares;
 mod normalised;
 
+pub use adaptive::AdaptiveLeastSquares;
 pub use bounded::Bounded;
 pub use drem::Drem;
 pub use extension::{Kreisselmeier, RegressorExtension, Response};

@@ -97,7 +97,8 @@ where
         let mut least = Information::from_variances(&SVector::<M::Scalar, NE>::repeat(nalgebra::one()))?;
         let mut normalised_square = nalgebra::zero();
         for (row, &value) in root.row_iter().zip(value.iter()) {
-            normalised_square += least.absorb_and_judge(&row.transpose(), value);
+            let (rest, weight) = least.absorb_with_rest(&row.transpose(), value, nalgebra::one());
+            normalised_square += weight * rest * rest;
         }
         if Real::is_finite(normalised_square) { Ok(Innovation { value, normalised_square }) } else { Err(Fault::State) }
     }

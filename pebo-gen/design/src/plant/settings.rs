@@ -133,6 +133,8 @@ pub enum Estimator<N> {
     },
     /// Least squares.
     LeastSquares(Covariance<N>),
+    /// Least squares with a guess of the process noise besides what is known of it, corrected by the innovations.
+    AdaptiveLeastSquares(Covariance<N>, Vec<N>),
     /// A scalar estimator for each unknown.
     Drem {
         /// The gains of these.
@@ -147,7 +149,7 @@ impl<N> Estimator<N> {
     pub fn unknowns(&self) -> usize {
         match self {
             Self::Gradient(gain) | Self::NormalisedGradient { gain, .. } | Self::Drem { gain, .. } => gain.len(),
-            Self::LeastSquares(covariance) => covariance.start.len(),
+            Self::LeastSquares(covariance) | Self::AdaptiveLeastSquares(covariance, _) => covariance.start.len(),
         }
     }
 }
@@ -161,6 +163,14 @@ pub struct Covariance<N> {
     pub forgetting: N,
     /// The growth of the covariance in a second, if any.
     pub process_noise: Option<Vec<N>>,
+}
+
+impl<N> Covariance<N> {
+    /// All its numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = &N> {
+        let Self { start, forgetting, process_noise } = self;
+        start.iter().chain([forgetting]).chain(process_noise.iter().flatten())
+    }
 }
 
 /// The regressor extension of DREM.

@@ -9,8 +9,8 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Drem, Estimator, Fault, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares, NormalisedGradient,
-    RegressorExtension, Response, Turn, Uncertain,
+    AdaptiveLeastSquares, Drem, Estimator, Fault, FiniteTime, Gradient, Information, Kreisselmeier, LeastSquares,
+    NormalisedGradient, RegressorExtension, Response, Turn, Uncertain,
 };
 
 use super::setup::{self, Covariance, Extension};
@@ -22,8 +22,9 @@ use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
 pub(crate) enum PaddedEstimator<const N: usize> {
     Gradient(Gradient<f64, N>),
     Normalised(NormalisedGradient<f64, N>),
-    /// The one with a covariance.
+    /// Those with a covariance.
     Squares(LeastSquares<f64, N>),
+    Adaptive(AdaptiveLeastSquares<f64, N, N>),
     Mixed(Box<dyn DynEstimator<N>>),
 }
 
@@ -37,12 +38,9 @@ impl<const N: usize> PaddedEstimator<N> {
             setup::Estimator::NormalisedGradient { gain, mu } => {
                 Self::Normalised(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
             }
-            setup::Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
-                let squares = LeastSquares::diagonal(&all(start), *forgetting)?;
-                Self::Squares(match process_noise {
-                    Some(noise) => squares.with_process_noise(&pad(noise))?,
-                    None => squares,
-                })
+            setup::Estimator::LeastSquares(covariance) => Self::Squares(squares(covariance)?),
+            setup::Estimator::AdaptiveLeastSquares(covariance, guess) => {
+                Self::Adaptive(AdaptiveLeastSquares::new(squares(covariance)?, &pad(guess))?)
             }
             setup::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
                 Self::Mixed(mixed(gain, extension)?)
@@ -59,17 +57,27 @@ impl<const N: usize> Clone for PaddedEstimator<N> {
             Self::Gradient(gradient) => Self::Gradient(*gradient),
             Self::Normalised(gradient) => Self::Normalised(*gradient),
             Self::Squares(squares) => Self::Squares(*squares),
+            Self::Adaptive(squares) => Self::Adaptive(*squares),
             Self::Mixed(mixed) => Self::Mixed(mixed.boxed()),
         }
     }
 }
 
 impl<const N: usize> PaddedEstimator<N> {
+    /// The factor of the process noise, as a multiple of the settings'.
+    pub(crate) fn factor(&self) -> f64 {
+        match self {
+            Self::Adaptive(squares) => squares.factor(),
+            Self::Gradient(_) | Self::Normalised(_) | Self::Squares(_) | Self::Mixed(_) => 1.0,
+        }
+    }
+
     fn face(&self) -> &dyn DynEstimator<N> {
         match self {
             Self::Gradient(gradient) => gradient,
             Self::Normalised(gradient) => gradient,
             Self::Squares(squares) => squares,
+            Self::Adaptive(squares) => squares,
             Self::Mixed(mixed) => &**mixed,
         }
     }
@@ -79,6 +87,7 @@ impl<const N: usize> PaddedEstimator<N> {
             Self::Gradient(gradient) => gradient,
             Self::Normalised(gradient) => gradient,
             Self::Squares(squares) => squares,
+            Self::Adaptive(squares) => squares,
             Self::Mixed(mixed) => &mut **mixed,
         }
     }
@@ -88,6 +97,7 @@ impl<const N: usize> Uncertain<f64, N> for PaddedEstimator<N> {
     fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
         match self {
             Self::Squares(squares) => squares.covariance_root(dt),
+            Self::Adaptive(squares) => squares.covariance_root(dt),
             Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
         }
     }
@@ -107,8 +117,10 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
     }
 
     fn constrain(&mut self, onto: impl FnOnce(&SVector<f64, N>, &Information<f64, N>) -> Option<SVector<f64, N>>) {
-        if let Self::Squares(squares) = self {
-            Estimator::<f64, N, N>::constrain(squares, onto);
+        match self {
+            Self::Squares(squares) => Estimator::<f64, N, N>::constrain(squares, onto),
+            Self::Adaptive(squares) => squares.constrain(onto),
+            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => {}
         }
     }
 
@@ -122,6 +134,16 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
 
     fn is_finite(&self) -> bool {
         self.face().is_finite()
+    }
+}
+
+/// Least squares with their settings; a padded unknown wanders not.
+fn squares<const N: usize>(settings: &Covariance) -> Result<LeastSquares<f64, N>, Fault> {
+    let Covariance { start, forgetting, process_noise } = settings;
+    let squares = LeastSquares::diagonal(&padded(start, 1.0), *forgetting)?;
+    match process_noise {
+        Some(noise) => squares.with_process_noise(&pad(noise)),
+        None => Ok(squares),
     }
 }
 

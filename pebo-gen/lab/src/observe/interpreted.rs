@@ -426,7 +426,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
         let taken = self.observer.estimator().covariance_root(0.0).is_some_and(|root| {
             let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
             let interval = Interval { before: &before, after, u: &u, dt, z };
-            uncertainty.take(model, &interval, &(map * root), &missing).is_ok()
+            let factor = self.observer.estimator().estimator().factor();
+            uncertainty.take(model, &interval, (&(map * root), factor), &missing).is_ok()
         });
         if !taken {
             uncertainty.reset();
@@ -437,8 +438,12 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
 /// The noise model of a design, where the noise of a sample is not only in its row.
 fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
     let settings = &design.settings;
-    let (Some(Prediction::Noise(noise)), Operator::Sampled(weights), Estimator::LeastSquares(Covariance { start, .. })) =
-        (&settings.prediction, &settings.operator, &settings.estimator)
+    let (Some(Prediction::Noise(noise)), Operator::Sampled(weights)) = (&settings.prediction, &settings.operator)
+    else {
+        return None;
+    };
+    let (Estimator::LeastSquares(Covariance { start, .. })
+    | Estimator::AdaptiveLeastSquares(Covariance { start, .. }, _)) = &settings.estimator
     else {
         return None;
     };

@@ -19,6 +19,7 @@ impl<const N: usize> MonitoredEstimator<N> {
     pub(crate) fn new(settings: &setup::Estimator, unknowns: usize) -> Result<Self, Fault> {
         let forgetting = match settings {
             setup::Estimator::LeastSquares(Covariance { forgetting, .. })
+            | setup::Estimator::AdaptiveLeastSquares(Covariance { forgetting, .. }, _)
             | setup::Estimator::Drem { extension: Extension::Kreisselmeier { forgetting, .. }, .. }
             | setup::Estimator::Drem { extension: Extension::LeastSquares(Covariance { forgetting, .. }), .. } => {
                 *forgetting
@@ -26,6 +27,11 @@ impl<const N: usize> MonitoredEstimator<N> {
             _ => 0.0,
         };
         Ok(Self { estimator: PaddedEstimator::new(settings)?, information: Gramian::new(unknowns, forgetting) })
+    }
+
+    /// The factor of the process noise, as a multiple of the settings'.
+    pub(crate) fn factor(&self) -> f64 {
+        self.estimator.factor()
     }
 
     /// The information of the data on each component of the unknown.

@@ -157,13 +157,14 @@ impl Settings {
         };
         let settings = derived.settings;
         let all = |values: &[Rational]| values.iter().map(Rational::to_f64).collect::<Vec<f64>>();
+        let rounded = |settings::Covariance { start, forgetting, process_noise }: &settings::Covariance<Rational>| {
+            let process_noise = process_noise.as_deref().map(all);
+            Covariance { start: all(start), forgetting: forgetting.to_f64(), process_noise }
+        };
         let estimator = match &settings.estimator {
-            settings::Estimator::LeastSquares(settings::Covariance { start, forgetting, process_noise }) => {
-                Estimator::LeastSquares(Covariance {
-                    start: all(start),
-                    forgetting: forgetting.to_f64(),
-                    process_noise: process_noise.as_deref().map(all),
-                })
+            settings::Estimator::LeastSquares(covariance) => Estimator::LeastSquares(rounded(covariance)),
+            settings::Estimator::AdaptiveLeastSquares(covariance, guess) => {
+                Estimator::AdaptiveLeastSquares(rounded(covariance), all(guess))
             }
             // Known numbers lead to least squares.
             _ => return None,

@@ -43,6 +43,8 @@ pub(crate) struct Uncertainty<const N: usize> {
     weights: SVector<f64, N>,
     start: SVector<f64, N>,
     drift: SVector<f64, N>,
+    /// The drift at present, as a multiple of that: an adaptive estimator's own.
+    factor: f64,
     rows: usize,
     measured: Vec<usize>,
     /// None before the first sample.
@@ -86,6 +88,7 @@ impl<const N: usize> Uncertainty<N> {
             weights: padded(&noise.weights, 1.0),
             start: pad(&noise.start),
             drift: pad(&noise.drift),
+            factor: 1.0,
             rows: noise.rows,
             measured: noise.measured.clone(),
             joint: None,
@@ -95,6 +98,7 @@ impl<const N: usize> Uncertainty<N> {
     /// Starts again before the first sample.
     pub(crate) fn reset(&mut self) {
         self.joint = None;
+        self.factor = 1.0;
     }
 
     /// Takes the first sample: in the output form it is the estimate of the outputs, and its noise is their error.
@@ -113,8 +117,8 @@ impl<const N: usize> Uncertainty<N> {
         self.joint = Some(JointCovariance { errors, both, noise });
     }
 
-    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z. A missing output
-    /// has been replaced by what the observer expects of it.
+    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z, and process noise
+    /// times the factor. A missing output has been replaced by what the observer expects of it.
     ///
     /// # Errors
     /// [`Fault::Singular`] where the flow has no exponential, as of the step itself.
@@ -122,7 +126,7 @@ impl<const N: usize> Uncertainty<N> {
         &mut self,
         model: &M,
         interval: &Interval<'_, N>,
-        root: &SMatrix<f64, N, N>,
+        (root, factor): (&SMatrix<f64, N, N>, f64),
         missing: &[bool],
     ) -> Result<(), Fault>
     where
@@ -145,7 +149,8 @@ impl<const N: usize> Uncertainty<N> {
         let fresh = of_noise * present;
         let to_errors = [kept * of_errors, kept * of_noise, kept * fresh + gain * of_sample * present];
         let to_noise = [expected * of_errors, expected * of_noise, expected * fresh + present];
-        let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
+        let drift = self.drift_over(interval.dt);
+        self.factor = factor;
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
         let between = |left: &[SMatrix<f64, N, N>; 3], right: &[SMatrix<f64, N, N>; 3]| {
             let [by_error, by_noise, by_sample] = left;
@@ -176,7 +181,7 @@ impl<const N: usize> Uncertainty<N> {
         let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
         let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
-        let drift = SMatrix::from_diagonal(&(self.drift * interval.dt));
+        let drift = self.drift_over(interval.dt);
         let covariance = by_error * (errors * by_error.transpose() + both * by_noise.transpose())
             + by_noise * (both.transpose() * by_error.transpose() + noise * by_noise.transpose())
             + by_sample * sensors * by_sample.transpose()
@@ -211,10 +216,15 @@ impl<const N: usize> Uncertainty<N> {
         squares.iter().all(|square| square.is_finite()).then(|| squares.map(f64::sqrt))
     }
 
+    /// What z drifts in this time, as a covariance.
+    fn drift_over(&self, seconds: f64) -> SMatrix<f64, N, N> {
+        SMatrix::from_diagonal(&(self.drift * (self.factor * seconds)))
+    }
+
     /// The columns of a root of the covariance of z and the outputs.
     fn columns(&self, age: f64) -> Option<Vec<(SVector<f64, N>, SVector<f64, N>)>> {
         let JointCovariance { errors, both, noise } = self.joint.as_ref()?;
-        let errors = errors + SMatrix::from_diagonal(&(self.drift * age));
+        let errors = errors + self.drift_over(age);
         let at = |i: usize, j: usize| match (i.checked_sub(N), j.checked_sub(N)) {
             (None, None) => errors[(i, j)],
             (None, Some(j)) => both[(i, j)],

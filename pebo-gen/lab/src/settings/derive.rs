@@ -32,6 +32,10 @@ pub(crate) const BANDWIDTH: f64 = 0.1;
 /// The least variance at the start, as a share of the largest: zero would be no covariance.
 const CERTAIN: f64 = 1e-12;
 
+/// The points on the period of an angle at which slopes are taken: of sines and cosines, and their squares, the mean of so
+/// many is that over the period.
+const DIRECTIONS: u32 = 8;
+
 /// The settings derived from known numbers.
 pub(super) fn derive(
     model: &Model,
@@ -67,29 +71,35 @@ pub(super) fn derive(
     let deviations = Deviations::of(model, plant, &known, period)?;
 
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
-    let Coordinates { covariance, mut drift, noise } = coordinates;
+    let Coordinates { covariance, mut drift, sensed } = coordinates;
+    // A guess is corrected by what the samples show; through a filter, their errors are not independent.
+    let adapts = deviations.are_assumed && frame.process_noise.is_none() && kind != ObserverKind::Filtered;
     #[cfg(feature = "simulate")]
-    let known = KnownNumbers::new(plant, model, &deviations, (kind, can_rebase), [&covariance, &noise]);
+    let known = {
+        let noise: Vec<f64> = drift.iter().zip(&sensed).map(|(drift, sensed)| drift + sensed).collect();
+        KnownNumbers::new(plant, model, &deviations, (kind, can_rebase, adapts), [&covariance, &noise])
+    };
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
     let mut chi_0 = start;
-    let (operator, covariance, noise) = match kind {
+    let (operator, covariance, [guess, noise]) = match kind {
         ObserverKind::Output => {
             // An equation of an instant has no unknown of its own.
             let rates = rows.len() - formulas.instants;
             let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
-            drift.splice(0..0, of_rows[..rates].iter().copied());
-            of_rows = with_sensor_noise(&formulas.rates, &point, &deviations, period, &of_rows)?;
+            of_rows.truncate(rates);
+            drift.splice(0..0, of_rows);
+            let mut of_rows = sensor_noise(&formulas.rates, &point, &deviations, period)?;
             of_rows.truncate(rates);
             // The outputs begin at the first sample.
             let start = rows[..rates].iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
             chi_0 = vec![Rational::from(0); rates].into_iter().chain(chi_0).collect();
-            (Operator::Sampled(rows), covariance, [of_rows, noise].concat())
+            (Operator::Sampled(rows), covariance, [drift.clone(), [of_rows, sensed].concat()])
         }
         ObserverKind::Sampled => {
-            let [covariance, noise] = formulas.of_unknowns(&point, [&covariance, &noise])?;
-            (Operator::Sampled(rows), covariance, noise)
+            let [covariance, guess, noise] = formulas.of_unknowns(&point, [&covariance, &drift, &sensed])?;
+            (Operator::Sampled(rows), covariance, [guess, noise])
         }
         ObserverKind::Filtered => {
             let Some(period) = period else {
@@ -98,24 +108,28 @@ pub(super) fn derive(
                 }
                 return None;
             };
-            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &noise])?, period)
+            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &drift, &sensed])?, period)
         }
     };
-    let exact = exact(&operator, &covariance, &noise);
-    let Some((operator, start, process_noise)) = exact else {
+    let noise = if adapts { noise } else { guess.iter().zip(noise).map(|(guess, noise)| guess + noise).collect() };
+    let exact = exact(&operator, [&covariance, &noise, &guess]);
+    let Some((operator, [start, process_noise, guess])) = exact else {
         problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
         return None;
     };
+    let is_noisy = !adapts || process_noise.iter().any(|noise| !noise.is_zero());
+    let process_noise = is_noisy.then_some(process_noise);
+    let covariance = Covariance { start, forgetting: Rational::from(0), process_noise };
     let settings = Settings {
         operator,
         output: kind == ObserverKind::Output,
         expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
         straight: frame.straight,
-        estimator: Estimator::LeastSquares(Covariance {
-            start,
-            forgetting: Rational::from(0),
-            process_noise: Some(process_noise),
-        }),
+        estimator: if adapts {
+            Estimator::AdaptiveLeastSquares(covariance, guess)
+        } else {
+            Estimator::LeastSquares(covariance)
+        },
         lower: None,
         upper: None,
         within: frame.within,
@@ -155,8 +169,8 @@ struct Coordinates {
     covariance: Vec<f64>,
     /// The variances of their drift in a second.
     drift: Vec<f64>,
-    /// The same with the noise of the sensors, where outputs drive the cascade.
-    noise: Vec<f64>,
+    /// Those of what the noise of the sensors adds, where outputs drive the cascade.
+    sensed: Vec<f64>,
 }
 
 impl Coordinates {
@@ -171,27 +185,32 @@ impl Coordinates {
         let x_and_y = [deviations.start.as_slice(), &deviations.sensors].concat();
         let at_start = formulas.phi.wide_variances(point, &x_and_y)?;
         let drifts = [deviations.disturbance.as_slice(), &deviations.of_outputs].concat();
-        let drift = formulas.phi.variances(point, &drifts)?;
-        let noise = with_sensor_noise(&formulas.flow, point, deviations, period, &drift)?;
+        let drift = mean_drift(formulas, point, &drifts)?;
+        let sensed = sensor_noise(&formulas.flow, point, deviations, period)?;
         let written = frame.process_noise.as_ref().map(all);
         Some(Self {
             covariance: frame.covariance.as_ref().map_or(at_start, all),
-            drift: written.clone().unwrap_or(drift),
-            noise: written.unwrap_or(noise),
+            sensed: if written.is_some() { vec![0.0; sensed.len()] } else { sensed },
+            drift: written.unwrap_or(drift),
         })
     }
 }
 
-/// Variances with the contribution of the samples' noise to rates, held for a period.
-fn with_sensor_noise(
-    rates: &Slopes,
-    point: &Point,
-    deviations: &Deviations,
-    period: Option<f64>,
-    variances: &[f64],
-) -> Option<Vec<f64>> {
+/// The variances that the drift of the states comes to in a second: an angle goes round, and with it the direction in which
+/// its drift moves z, so that the mean over its period counts.
+fn mean_drift(formulas: &Formulas, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
+    let here = formulas.phi.variances(point, deviations)?;
+    let turned: Vec<Vec<f64>> =
+        point.turned(DIRECTIONS).iter().filter_map(|point| formulas.phi.variances(point, deviations)).collect();
+    let count = turned.iter().map(|_| 1.0).sum::<f64>();
+    let mean = |place: usize| turned.iter().map(|variances| variances[place]).sum::<f64>() / count;
+    Some(if turned.is_empty() { here } else { (0..here.len()).map(mean).collect() })
+}
+
+/// What the samples' noise adds to rates, held for a period, as variances in a second.
+fn sensor_noise(rates: &Slopes, point: &Point, deviations: &Deviations, period: Option<f64>) -> Option<Vec<f64>> {
     let added = rates.variances(point, &deviations.sensors)?;
-    Some(variances.iter().zip(added).map(|(q, variance)| q + variance * period.unwrap_or_default()).collect())
+    Some(added.into_iter().map(|variance| variance * period.unwrap_or_default()).collect())
 }
 
 /// The settings of the section beside its standard deviations.
@@ -217,11 +236,15 @@ fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
 
 /// The rates through a filter. The filtered rate of white samples has the standard deviation `alpha s`, correlated over
 /// a time constant: the intensity is not too small over any time, and with it least squares have their covariances.
-fn filtered(rows: &[f64], [covariance, noise]: [Vec<f64>; 2], period: f64) -> (Operator<f64>, Vec<f64>, Vec<f64>) {
+fn filtered(
+    rows: &[f64],
+    [covariance, drift, sensed]: [Vec<f64>; 3],
+    period: f64,
+) -> (Operator<f64>, Vec<f64>, [Vec<f64>; 2]) {
     let alpha = BANDWIDTH / period;
     let intensity = rows.iter().fold(0.0, |most: f64, s| most.max(2.0 * alpha * s * s));
     let over = |values: Vec<f64>| values.into_iter().map(|value| value / intensity).collect();
-    (Operator::Filter(alpha), over(covariance), over(noise))
+    (Operator::Filter(alpha), over(covariance), [over(drift), over(sensed)])
 }
 
 /// The kind of observer that the regression admits and the section asks for.
@@ -391,11 +414,12 @@ impl Formulas {
         needed
     }
 
-    /// Variances of the unknowns at the start and of their drift, from those of theta.
-    fn of_unknowns(&self, point: &Point, [covariance, noise]: [&[f64]; 2]) -> Option<[Vec<f64>; 2]> {
+    /// Variances of the unknowns at the start, of their drift and of what sensors add, from those of theta.
+    fn of_unknowns(&self, point: &Point, [covariance, drift, sensed]: [&[f64]; 3]) -> Option<[Vec<f64>; 3]> {
         let roots = |variances: &[f64]| variances.iter().map(|variance| variance.sqrt()).collect::<Vec<_>>();
         let start = self.unknowns.wide_variances(point, &roots(covariance))?;
-        Some([start, self.unknowns.variances(point, &roots(noise))?])
+        let noise = |variances: &[f64]| self.unknowns.variances(point, &roots(variances));
+        Some([start, noise(drift)?, noise(sensed)?])
     }
 
     /// The standard deviation of each row's samples.
@@ -425,10 +449,10 @@ impl Formulas {
     }
 }
 
-/// Operator, covariance and process noise in four digits, if all are in range.
-type Exact = (Operator<Rational>, Vec<Rational>, Vec<Rational>);
+/// Operator, covariance, process noise and its guess in four digits, if all are in range.
+type Exact = (Operator<Rational>, [Vec<Rational>; 3]);
 
-fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<Exact> {
+fn exact(operator: &Operator<f64>, [covariance, noise, guess]: [&[f64]; 3]) -> Option<Exact> {
     let all = |values: &[f64]| values.iter().map(|value| rounded(*value)).collect::<Option<Vec<_>>>();
     let operator = match operator {
         Operator::Filter(alpha) => Operator::Filter(rounded(*alpha)?),
@@ -438,5 +462,5 @@ fn exact(operator: &Operator<f64>, covariance: &[f64], noise: &[f64]) -> Option<
     let largest = covariance.iter().copied().fold(0.0, f64::max);
     let least = if largest > 0.0 { CERTAIN * largest } else { CERTAIN };
     let covariance: Vec<f64> = covariance.iter().map(|variance| variance.max(least)).collect();
-    Some((operator, all(&covariance)?, all(noise)?))
+    Some((operator, [all(&covariance)?, all(noise)?, all(guess)?]))
 }

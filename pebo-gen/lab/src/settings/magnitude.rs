@@ -40,6 +40,8 @@ pub(super) struct Deviations {
     pub(super) disturbance: Vec<f64>,
     /// The drift of each output besides its rate.
     pub(super) of_outputs: Vec<f64>,
+    /// True if the author wrote none of them: the disturbances are a guess.
+    pub(super) are_assumed: bool,
 }
 
 impl Deviations {
@@ -87,6 +89,7 @@ impl Deviations {
             start: x.iter().map(start).collect(),
             disturbance: plant.x.iter().map(drift).collect::<Option<_>>()?,
             of_outputs: y.iter().map(|output| of(&written.disturbance, *output).unwrap_or_default()).collect(),
+            are_assumed: silent,
         })
     }
 }

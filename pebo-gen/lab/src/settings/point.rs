@@ -90,6 +90,25 @@ impl<'a> Point<'a> {
         point
     }
 
+    /// Points around the periods of the states that are angles; none where no state is one. With several angles each goes
+    /// round at a pace of its own.
+    pub(super) fn turned(&self, count: u32) -> Vec<Self> {
+        let angles = self.plant.x.iter().filter_map(|state| {
+            let period = self.value(self.plant.period(state.symbol)?)?;
+            Some((state.symbol, self.of_symbol(state.symbol)?, period))
+        });
+        let angles: Vec<(Symbol, f64, f64)> = angles.collect();
+        let count = if angles.is_empty() { 0 } else { count };
+        let turned = |part: u32| {
+            let moved = (1_u32..)
+                .zip(&angles)
+                .map(|(pace, (_, at, period))| at + period * f64::from(part * pace % count) / f64::from(count));
+            let symbols: Vec<Symbol> = angles.iter().map(|(symbol, ..)| *symbol).collect();
+            self.with(&symbols, &moved.collect::<Vec<f64>>())
+        };
+        (0..count).map(turned).collect()
+    }
+
     /// The number of a symbol.
     pub(super) fn of_symbol(&self, symbol: Symbol) -> Option<f64> {
         self.values.get(&symbol).copied()

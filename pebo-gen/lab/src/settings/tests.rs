@@ -105,6 +105,44 @@ fn settings_need_no_known_numbers_if_the_start_is_known() {
 }
 
 #[test]
+fn a_guessed_drift_is_corrected_by_the_samples() {
+    let estimator = |text: &str| derived(&format!("{CUK}{text}{SCENARIO}")).0.unwrap().estimator;
+    let Estimator::AdaptiveLeastSquares(Covariance { process_noise, .. }, guess) = estimator("") else {
+        panic!("no guess")
+    };
+    // What sensors add is no guess; outputs do not drift besides.
+    let noise = process_noise.unwrap();
+    assert!(noise[1..].iter().all(|noise| noise.to_f64() > 0.0), "{noise:?}");
+    assert!(
+        guess[..2].iter().all(Rational::is_zero) && guess[2..].iter().all(|guess| guess.to_f64() > 0.0),
+        "{guess:?}"
+    );
+    // Numbers of the author are not corrected; nor is what goes through a filter, which correlates samples by itself.
+    for section in ["sensors: {v2: 0.1, v4: 0.1}", "disturbance: {i1: 1}", "form: rate"] {
+        assert!(matches!(estimator(&format!("observer: {{{section}}}\n")), Estimator::LeastSquares(_)), "{section}");
+    }
+}
+
+#[test]
+fn the_drift_of_an_angle_has_no_direction() {
+    let text = |angles: &str| {
+        format!(
+            "model: m\nx: [q]\ny: [y1, y2]\nu: [v]\nf_x: {{q: v}}\nf_y: {{y1: 3*cos(q), y2: 3*sin(q)}}\n{angles}\
+             phi: [3*cos(q), 3*sin(q)]\nclass: gpebo\nobserver: {{sensors: {{y1: 1, y2: 1}}, start: {{q: 0.1}}, \
+             disturbance: {{q: 2}}}}\nsimulation: {{step: 0.1, initial: {{q: 0, y1: 0, y2: 0}}, control: {{v: 0}}}}\n"
+        )
+    };
+    let noise = |angles: &str| {
+        let (settings, problems) = derived(&text(angles));
+        let [_, noise, _] = numbers(&settings.unwrap_or_else(|| panic!("{problems:?}")));
+        noise[noise.len() - 2..].to_vec()
+    };
+    // At q = 0 it moves 3*sin(q) alone, by 3*2; over a turn each of both by half of the square.
+    assert!(close(&noise(""), &[0.0, 36.0]), "{:?}", noise(""));
+    assert!(close(&noise("angles: {q: 2*pi}\n"), &[18.0, 18.0]), "{:?}", noise("angles: {q: 2*pi}\n"));
+}
+
+#[test]
 fn known_numbers_may_depend_on_the_operating_point() {
     let (settings, problems) = derived(&format!("{CUK}{KNOWN}"));
     assert!(settings.is_none());

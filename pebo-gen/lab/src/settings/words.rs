@@ -47,7 +47,7 @@ impl KnownNumbers {
         plant: &Plant,
         model: &Model,
         deviations: &Deviations,
-        (kind, rebased): (ObserverKind, bool),
+        (kind, rebased, adapts): (ObserverKind, bool, bool),
         [covariance, noise]: [&[f64]; 2],
     ) -> Self {
         let arena = &plant.arena;
@@ -85,7 +85,11 @@ impl KnownNumbers {
         };
         let silent = written.known().is_none_or(|(key, _)| key == "form");
         Self {
-            observer: observer.to_owned(),
+            observer: if adapts {
+                format!("{observer}, with as much of the disturbance as samples show")
+            } else {
+                observer.to_owned()
+            },
             numbers: vec![
                 numbers("sensors", lacks(&y, &written.sensors), named(&y, &deviations.sensors, "")),
                 numbers("start", lacks(&x, &written.start), named(&x, &deviations.start, "")),

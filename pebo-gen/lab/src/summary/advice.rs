@@ -49,7 +49,7 @@ pub(crate) fn advise(
     let diagnostic = Diagnostic::warning(Code::NotConverged, where_said, message);
     let raised = match estimator {
         _ if summary.known.is_some() => "`start` or `disturbance` under `observer`",
-        Estimator::LeastSquares(_) => "`covariance`",
+        Estimator::LeastSquares(_) | Estimator::AdaptiveLeastSquares(..) => "`covariance`",
         Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } | Estimator::Drem { .. } => "`gain`",
     };
     let faster = match origin {
@@ -166,7 +166,9 @@ fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
 fn follow(state: &str, (estimator, known): (&Estimator, bool)) -> String {
     let setting = match estimator {
         _ if known => format!("raise `disturbance` of `{state}` under `observer`"),
-        Estimator::LeastSquares(_) => format!("raise `process_noise` of `{state}`, or `forgetting`"),
+        Estimator::LeastSquares(_) | Estimator::AdaptiveLeastSquares(..) => {
+            format!("raise `process_noise` of `{state}`, or `forgetting`")
+        }
         Estimator::Gradient(_) | Estimator::NormalisedGradient { .. } => "raise `gain`".to_owned(),
         Estimator::Drem { .. } => "raise `gain` and `forgetting`".to_owned(),
     };

@@ -2,8 +2,8 @@
 
 use pebo_runtime::nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use pebo_runtime::{
-    Drem, Estimator, FiniteTime, Gradient, Hold, Kreisselmeier, LeastSquares, RegressionOperator, Response, Sides,
-    WindowedRegression,
+    AdaptiveLeastSquares, Drem, Estimator, FiniteTime, Gradient, Hold, Kreisselmeier, LeastSquares, RegressionOperator,
+    Response, Sides, WindowedRegression,
 };
 
 use super::{CUK_CASE_2, resolve, run};
@@ -112,6 +112,8 @@ fn padding_changes_no_estimate() {
     let finite = |period| Some(setup::FiniteTime { clip: 0.2, period });
     same(&setup::Estimator::Gradient(gain.clone()), gradient);
     same(&setup::Estimator::LeastSquares(covariance()), squares);
+    let adaptive = AdaptiveLeastSquares::new(squares, &Vector2::new(0.3, 7.0)).unwrap();
+    same(&setup::Estimator::AdaptiveLeastSquares(covariance(), vec![0.3, 7.0]), adaptive);
     same(&mixed(kreisselmeier(None)), drem);
     same(&mixed(kreisselmeier(finite(None))), FiniteTime::once(drem, 0.2).unwrap());
     same(&mixed(kreisselmeier(finite(Some(1.0)))), FiniteTime::tracking(drem, 0.2, 1.0).unwrap());

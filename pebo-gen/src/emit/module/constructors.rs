@@ -90,6 +90,7 @@ impl Module<'_> {
             Estimator::Gradient(_) => &[],
             Estimator::NormalisedGradient { .. } => &["NormalisedGradient"],
             Estimator::LeastSquares(_) => &["LeastSquares"],
+            Estimator::AdaptiveLeastSquares(..) => &["AdaptiveLeastSquares", "LeastSquares"],
             Estimator::Drem { extension, .. } => match extension {
                 Extension::Kreisselmeier { finite_time: None, .. } => &["Drem", "Kreisselmeier"],
                 Extension::Kreisselmeier { finite_time: Some(_), .. } => &["Drem", "FiniteTime", "Kreisselmeier"],
@@ -115,6 +116,7 @@ impl Module<'_> {
             Estimator::Gradient(_) => gradient,
             Estimator::NormalisedGradient { .. } => quote!(NormalisedGradient<#scalar, NE>),
             Estimator::LeastSquares(_) => squares,
+            Estimator::AdaptiveLeastSquares(..) => quote!(AdaptiveLeastSquares<#scalar, NR, #unknowns>),
             Estimator::Drem { extension, .. } => {
                 let inner = match extension {
                     Extension::Kreisselmeier { .. } => quote!(Kreisselmeier<#scalar, NE>),
@@ -320,22 +322,7 @@ impl Module<'_> {
             let (name, values) = (ident(name), values.iter().map(&mut one));
             quote!(let #name = SVector::from([#(#values),*]);)
         };
-        let lists = match &settings.estimator {
-            Estimator::Gradient(gain) | Estimator::NormalisedGradient { gain, .. } => list("gain", gain),
-            Estimator::LeastSquares(covariance) => {
-                let noise = covariance.process_noise.as_ref().map(|noise| list("process_noise", noise));
-                let start = list("covariance", &covariance.start);
-                quote!(#start #noise)
-            }
-            Estimator::Drem { gain, extension } => {
-                let inner = match extension {
-                    Extension::Kreisselmeier { gain, .. } | Extension::Gradient(gain) => list("regressor_gain", gain),
-                    Extension::LeastSquares(covariance) => list("covariance", &covariance.start),
-                };
-                let gain = list("gain", gain);
-                quote!(#inner #gain)
-            }
-        };
+        let lists = lists(&settings.estimator, &mut list);
         let scalar = ident(self.scalar.name());
         let mut bound = |name: &str, values: Option<&Vec<Rational>>, absent: &str| {
             if let Some(values) = values {
@@ -365,12 +352,15 @@ impl Module<'_> {
                     let estimator = NormalisedGradient::new(gradient, #mu)?;
                 }
             }
-            Estimator::LeastSquares(Covariance { forgetting, process_noise, .. }) => {
+            Estimator::LeastSquares(Covariance { forgetting, process_noise, .. })
+            | Estimator::AdaptiveLeastSquares(Covariance { forgetting, process_noise, .. }, _) => {
                 let forgetting = one(forgetting);
                 let wanders = process_noise
                     .is_some()
                     .then(|| quote!(let estimator = estimator.with_process_noise(&process_noise)?;));
-                quote!(let estimator = LeastSquares::diagonal(&covariance, #forgetting)?; #wanders)
+                let adapts = matches!(settings.estimator, Estimator::AdaptiveLeastSquares(..))
+                    .then(|| quote!(let estimator = AdaptiveLeastSquares::new(estimator, &guess)?;));
+                quote!(let estimator = LeastSquares::diagonal(&covariance, #forgetting)?; #wanders #adapts)
             }
             Estimator::Drem { extension, .. } => match extension {
                 Extension::Kreisselmeier { forgetting, finite_time, .. } => {
@@ -435,6 +425,10 @@ impl Module<'_> {
                 format!("normalised gradient of gain {} and normalisation {}", list(gain), one(mu))
             }
             Estimator::LeastSquares(covariance) => squares(covariance),
+            Estimator::AdaptiveLeastSquares(covariance, guess) => {
+                let more = if covariance.process_noise.is_some() { "and" } else { "with process noise" };
+                format!("{} {more} {} times a factor that the innovations correct", squares(covariance), list(guess))
+            }
             Estimator::Drem { gain, extension } => {
                 let (kind, extension) = match extension {
                     Extension::Kreisselmeier { gain, forgetting: rate, finite_time } => {
@@ -484,6 +478,30 @@ impl Module<'_> {
     }
 }
 
+/// The statements with the lists of numbers of an estimator.
+fn lists(estimator: &Estimator<Rational>, list: &mut impl FnMut(&str, &[Rational]) -> TokenStream) -> TokenStream {
+    match estimator {
+        Estimator::Gradient(gain) | Estimator::NormalisedGradient { gain, .. } => list("gain", gain),
+        Estimator::LeastSquares(covariance) | Estimator::AdaptiveLeastSquares(covariance, _) => {
+            let noise = covariance.process_noise.as_ref().map(|noise| list("process_noise", noise));
+            let start = list("covariance", &covariance.start);
+            let guess = match estimator {
+                Estimator::AdaptiveLeastSquares(_, guess) => Some(list("guess", guess)),
+                _ => None,
+            };
+            quote!(#start #noise #guess)
+        }
+        Estimator::Drem { gain, extension } => {
+            let inner = match extension {
+                Extension::Kreisselmeier { gain, .. } | Extension::Gradient(gain) => list("regressor_gain", gain),
+                Extension::LeastSquares(covariance) => list("covariance", &covariance.start),
+            };
+            let gain = list("gain", gain);
+            quote!(#inner #gain)
+        }
+    }
+}
+
 /// Estimates of states are kept within bounds.
 fn is_within(settings: &Settings<Rational>) -> bool {
     settings.within.iter().any(Option::is_some)
@@ -508,9 +526,8 @@ fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
     match estimator {
         Estimator::Gradient(gain) => numbers.extend(gain),
         Estimator::NormalisedGradient { gain, mu } => numbers.extend(gain.iter().chain([mu])),
-        Estimator::LeastSquares(Covariance { start, forgetting, process_noise }) => {
-            numbers.extend(start.iter().chain([forgetting]).chain(process_noise.iter().flatten()));
-        }
+        Estimator::LeastSquares(covariance) => numbers.extend(covariance.numbers()),
+        Estimator::AdaptiveLeastSquares(covariance, guess) => numbers.extend(covariance.numbers().chain(guess)),
         Estimator::Drem { gain, extension } => {
             numbers.extend(gain);
             match extension {

@@ -219,15 +219,15 @@ impl Reader<'_> {
             ("LeastSquares::diagonal", [Some(List(start)), Some(Number(forgetting)), None, None]) => {
                 Made::Estimator(Estimator::LeastSquares(Covariance { start, forgetting, process_noise: None }))
             }
+            (
+                "AdaptiveLeastSquares::new",
+                [Some(Made::Estimator(Estimator::LeastSquares(covariance))), Some(List(guess)), None, None],
+            ) => Made::Estimator(Estimator::AdaptiveLeastSquares(covariance, guess)),
             ("Kreisselmeier::new", [Some(List(gain)), Some(Number(forgetting)), None, None]) => {
                 Made::Extension(Extension::Kreisselmeier { gain, forgetting, finite_time: None })
             }
             ("Response::new", [Some(Made::Estimator(estimator)), None, None, None]) => {
-                Made::Extension(match estimator {
-                    Estimator::Gradient(gain) => Extension::Gradient(gain),
-                    Estimator::LeastSquares(covariance) => Extension::LeastSquares(covariance),
-                    _ => return None,
-                })
+                Made::Extension(response(estimator)?)
             }
             ("Drem::new", [Some(Made::Extension(extension)), Some(List(gain)), None, None]) => {
                 Made::Estimator(Estimator::Drem { gain, extension })
@@ -364,6 +364,15 @@ fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
 fn places(array: &Syntax) -> Option<Vec<usize>> {
     let Syntax::Array(array) = array else { return None };
     array.elems.iter().map(|place| compact(place).parse().ok()).collect()
+}
+
+/// The extension that is the response of an estimator.
+fn response(estimator: Estimator<Rational>) -> Option<Extension<Rational>> {
+    match estimator {
+        Estimator::Gradient(gain) => Some(Extension::Gradient(gain)),
+        Estimator::LeastSquares(covariance) => Some(Extension::LeastSquares(covariance)),
+        _ => None,
+    }
 }
 
 /// DREM that is exact after a finite time.

@@ -100,6 +100,10 @@ fn every_estimator_is_built() {
         ),
         (Estimator::LeastSquares(covariance()), "let estimator = LeastSquares::diagonal(&covariance, 0.5)?;"),
         (Estimator::LeastSquares(wandering()), "let estimator = estimator.with_process_noise(&process_noise)?;"),
+        (
+            Estimator::AdaptiveLeastSquares(wandering(), numbers(["8", "9e-4"])),
+            "let estimator = AdaptiveLeastSquares::new(estimator, &guess)?;",
+        ),
         (drem(kreisselmeier(None)), "let estimator = Drem::new(extension, &gain)?;"),
         (drem(kreisselmeier(finite(None))), "let estimator = FiniteTime::once(estimator, 0.1)?;"),
         (drem(kreisselmeier(finite(Some(number("6"))))), "let estimator = FiniteTime::tracking(estimator, 0.1, 6.0)?;"),

@@ -1,5 +1,6 @@
 //! Estimators on given regressions and in the loop of the Cuk converter.
 
+mod adaptive;
 mod contract;
 mod drem;
 mod efficiency;
