@@ -18,7 +18,11 @@ use crate::{Fault, Real, Turn};
 /// [`SampledRegression`](crate::SampledRegression); a filter would correlate them by itself. The factor is between `1e-6`,
 /// where it begins, and 1, one for all components. For an unknown that wanders as white noise adds up it settles around
 /// the one with which innovations are white, whatever weights the samples were given. A constant is known ever better, up
-/// to a thousandth of the guessed drift; where it steps, the factor reaches 1 within some forty samples.
+/// to a thousandth of the guessed drift.
+///
+/// A step shows at once in the mean of the last innovations: beyond five of its own standard deviations, what the unknown is
+/// guessed to wander in a thousand samples has happened, and the covariance gains it. So it is at most once in as many, and
+/// the unknown never wanders more than twice the guess.
 ///
 /// Units and everything else are those of [`LeastSquares`]. A sample whose row is zero, as of a missing output, says
 /// nothing of the factor.
@@ -41,6 +45,8 @@ pub struct AdaptiveLeastSquares<S: Real, const NR: usize, const NE: usize> {
     square: SVector<S, NR>,
     /// The number of them in that mean.
     seen: SVector<S, NR>,
+    /// The samples since the last step of the unknown, or the start.
+    since: S,
 }
 
 /// The share of an innovation in the mean of those before: of ten samples, within which two gains near the best one
@@ -59,6 +65,13 @@ const LARGEST: f64 = 3.0;
 /// it by a tenth or two around the best value, and it falls by half in some twenty samples with much too large a gain.
 const PACE: f64 = 0.05;
 
+/// The mean of innovations that shows a step, in their standard deviations: 5.2 of its own, which independent innovations
+/// exceed once in some millions.
+const STEP: f64 = 1.2;
+
+/// The samples whose guessed drift a step is, and after which there may be another.
+const IN_STEP: f64 = 1000.0;
+
 /// The bounds of the factor. It begins at the lower one, with a thousandth of the guessed deviation: an unknown is taken
 /// for constant until samples contradict that.
 const RANGE: [f64; 2] = [1e-6, 1.0];
@@ -72,7 +85,8 @@ impl<S: Real, const NR: usize, const NE: usize> AdaptiveLeastSquares<S, NR, NE> 
     pub fn new(squares: LeastSquares<S, NE>, guess: &SVector<S, NE>) -> Result<Self, Fault> {
         squares.with_process_noise(guess)?;
         let (mean, square, seen) = (SVector::zeros(), SVector::zeros(), SVector::zeros());
-        Ok(Self { squares, guess: *guess, factor: Real::from_f64(RANGE[0]), mean, square, seen })
+        let (factor, since) = (Real::from_f64(RANGE[0]), S::zero());
+        Ok(Self { squares, guess: *guess, factor, mean, square, seen, since })
     }
 
     /// What the unknown wanders at present, as a multiple of the guess.
@@ -123,6 +137,13 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Adaptiv
         self.squares.diffuse(&self.guess, self.factor * dt);
         self.squares.take(regressor, regressand, dt, seen)?;
         self.learn(&innovations, &shares);
+        let [step, in_step] = [STEP, IN_STEP].map(<S as Real>::from_f64);
+        if self.since < in_step {
+            self.since += S::one();
+        } else if (0..NR).any(|row| shares[row] * self.mean[row] * self.mean[row] > step * step * self.square[row]) {
+            self.squares.diffuse(&self.guess, in_step * dt);
+            (self.mean, self.since) = (SVector::zeros(), S::zero());
+        }
         Ok(())
     }
 
@@ -146,6 +167,7 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Adaptiv
         Estimator::<S, NR, NE>::reset(&mut self.squares, estimate);
         self.factor = Real::from_f64(RANGE[0]);
         [self.mean, self.square, self.seen] = [SVector::zeros(); 3];
+        self.since = S::zero();
     }
 
     fn is_finite(&self) -> bool {

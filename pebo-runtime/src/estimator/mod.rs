@@ -5,7 +5,7 @@
 //! | [`Gradient`], [`NormalisedGradient`] | persistent excitation | at the pace of the gain |
 //! | [`LeastSquares`], `beta = 0` | excitation during an interval, up to the weight of the start | ever more slowly |
 //! | [`LeastSquares`], `beta > 0` | the same | within `1/beta` |
-//! | [`AdaptiveLeastSquares`] | the same | once some forty samples contradict it, at the pace of the guessed noise |
+//! | [`AdaptiveLeastSquares`] | the same | within some ten samples where it stands out, else at the pace of the guess |
 //! | [`Drem`] of [`Kreisselmeier`], `l > 0` | persistent excitation, each component by itself | within `1/l` and the gain's time |
 //! | [`Drem`] of [`Kreisselmeier`], `l = 0` | excitation during an interval | never |
 //! | [`Drem`] of the [`Response`] of a [`Gradient`] or [`LeastSquares`] | excitation during an interval | as that estimator |
