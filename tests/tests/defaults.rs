@@ -38,6 +38,18 @@ fn observers_converge_without_a_number() {
     }
 }
 
+#[test]
+fn a_target_that_changes_its_course_is_followed_under_noise() {
+    // Half way the bearing begins to contradict a constant velocity; without noise the range takes longer than the run.
+    let case = plants::cases(&["models/bearing_only"]).unwrap().remove(0);
+    let noisy = case.text.replace("  duration: 2400\n", "  duration: 2400\n  noise: {beta: 1.4e-3}\n");
+    assert_ne!(noisy, case.text);
+    let summary = run(&noisy, 1);
+    let unsettled: Vec<String> =
+        summary.unsettled().iter().map(|rated| rated.estimate.name()).filter(|name| !name.starts_with("ekf")).collect();
+    assert!(unsettled.is_empty(), "{unsettled:?}\n{}", summary.text());
+}
+
 /// Case I of the Cuk converter at a duty cycle that changes, with sensors of known noise.
 const CUK: &str = "
 model: cuk

@@ -49,8 +49,7 @@ pub struct AdaptiveLeastSquares<S: Real, const NR: usize, const NE: usize> {
     since: S,
 }
 
-/// The share of an innovation in the mean of those before: of ten samples, within which two gains near the best one
-/// differ.
+/// The share of an innovation in the mean of those before: a memory of some ten samples.
 const IN_MEAN: f64 = 0.1;
 
 /// The innovations in the mean of their squares, which is to stand still while the other mean moves. The factor waits for
@@ -61,12 +60,11 @@ const IN_SQUARE: f64 = 50.0;
 /// and an outlier is forgotten with the samples after it.
 const LARGEST: f64 = 3.0;
 
-/// The relative change of the factor where innovation and mean agree or disagree by one standard deviation: noise moves
-/// it by a tenth or two around the best value, and it falls by half in some twenty samples with much too large a gain.
+/// The relative change of the factor where innovation and mean agree or disagree by one standard deviation.
 const PACE: f64 = 0.05;
 
-/// The mean of innovations that shows a step, in their standard deviations: 5.2 of its own, which independent innovations
-/// exceed once in some millions.
+/// The mean of innovations that shows a step, in their standard deviations: 5.2 of its own where they are independent, as
+/// the variance of a mean with this memory is `IN_MEAN / (2 - IN_MEAN)` of theirs.
 const STEP: f64 = 1.2;
 
 /// The samples whose guessed drift a step is, and after which there may be another.

@@ -137,7 +137,7 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
     }
 }
 
-/// Least squares with their settings; a padded unknown wanders not.
+/// Least squares with their settings; a padded unknown does not wander.
 fn squares<const N: usize>(settings: &Covariance) -> Result<LeastSquares<f64, N>, Fault> {
     let Covariance { start, forgetting, process_noise } = settings;
     let squares = LeastSquares::diagonal(&padded(start, 1.0), *forgetting)?;

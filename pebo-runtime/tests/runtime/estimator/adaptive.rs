@@ -10,7 +10,7 @@ use crate::noise::Noise;
 const PERIOD: f64 = 0.1;
 const SENSOR: f64 = 0.1;
 
-/// Least squares of one unknown whose estimate starts at random within 10, with the variance of its drift in a second.
+/// Least squares of one unknown whose estimate starts at 0, uncertain by 10, with the variance of its drift in a second.
 fn guessed(drift: f64) -> LeastSquares<f64, 1> {
     let squares = LeastSquares::diagonal(&Vector1::new(100.0), 0.0).unwrap();
     squares.with_process_noise(&Vector1::new(drift)).unwrap()
