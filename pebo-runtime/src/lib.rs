@@ -117,7 +117,7 @@ pub use estimator::{
 pub use extension::{Drift, Extension, Flow, Fundamental, Integrator, Turn};
 pub use fault::Fault;
 pub use interface::{INTERFACE, emitted_for};
-pub use model::{Functions, Model, Rebase, Regression};
+pub use model::{Functions, Model, OutputSlopes, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
 pub use numeric::{Real, Sum};
 pub use observer::{Innovation, Observer, State};

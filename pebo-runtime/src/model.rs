@@ -35,6 +35,7 @@ pub enum Regression {
 /// | [`flow`](Self::flow) | `h`, `lambda` | at both ends of an interval |
 /// | [`regression`](Self::regression) | `phi_0`, `phi_1` | at both ends |
 /// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
+/// | [`output_slopes`](Self::output_slopes) | slopes of `phi_0` and `h` by outputs | at both ends, in the output form |
 /// | [`theta`](Self::theta) | `theta` from the estimate of `eta` | once for each sample |
 /// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to four times |
 /// | [`recover`](Self::recover) | `phi_left` | once for each sample |
@@ -87,6 +88,16 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// are used, and `primitive_1`, the factor of the unknown. Not read if the regression is static.
     fn primitive(&self, _extension: &Self::Extension, _terms: &Self::Terms) -> Sides<Self::Scalar, NR, NE> {
         Sides { known: SVector::zeros(), factor: SMatrix::zeros() }
+    }
+
+    /// The slopes of the rates by the outputs whose rates the regression has, for the [output form](crate::OutputForm),
+    /// which has these outputs among its states. By default there are none: measured outputs alone drive the model.
+    fn output_slopes(
+        &self,
+        _terms: &Self::Terms,
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> OutputSlopes<Self::Scalar, NR, NZ> {
+        OutputSlopes { rates: SMatrix::zeros(), cascade: SMatrix::zeros() }
     }
 
     /// `theta` from the estimated unknown: `eta` itself in a linear parameterisation, a part of it in an
@@ -169,6 +180,16 @@ pub struct Functions<S: Real, const NE: usize, const NZ: usize> {
     pub values: SVector<S, NE>,
     /// Their derivatives: a row for each, a column for each component of `theta`.
     pub slopes: SMatrix<S, NE, NZ>,
+}
+
+/// The slopes of the rates by `primitive_0`, the outputs whose rates the regression has: an entry may be any function of
+/// the sample. One that is the derivative of its rate keeps the sensor's noise out of that rate, to first order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputSlopes<S: Real, const NR: usize, const NZ: usize> {
+    /// Those of the known side of the regression, in 1/s times the ratio of the outputs' units.
+    pub rates: SMatrix<S, NR, NR>,
+    /// Those of `h`, a column for each output.
+    pub cascade: SMatrix<S, NZ, NR>,
 }
 
 /// Marks a model that can be re-based exactly.

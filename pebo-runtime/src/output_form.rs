@@ -19,8 +19,18 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// unknowns: `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the
 /// sensors stays white, and with [`SampledRegression`](crate::SampledRegression), [`LeastSquares`](crate::LeastSquares)
 /// with process noise and [re-basing](crate::Observer::rebasing) at each sample the observer is a Kalman filter of the
-/// transformed plant. Where `A`, `B`, `Lambda` and `h` are free of the outputs it is *the* continuous-discrete Kalman
-/// filter; where they are not, the filter in which measured outputs drive the model.
+/// transformed plant.
+///
+/// Outputs in `A` and `h` are states of the observer too where the model gives their slopes, see
+/// [`Model::output_slopes`]: with `S_A` and `S_h`
+///
+/// ```text
+/// w' = A - S_A p_0 + S_A (w - p_1 z) + B z        z' = Lambda z + h - S_h p_0 + S_h (w - p_1 z)
+/// ```
+///
+/// which is the same along every trajectory, where `p_0 = w - p_1 z`, and free of the noise of `p_0` to first order.
+/// Where `A` and `h` are affine in the outputs with such slopes, and `B` and `Lambda` free of them, the observer is *the*
+/// continuous-discrete Kalman filter; elsewhere measured outputs drive the model.
 ///
 /// Sizes: `NW = NR - M::INSTANTS + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`,
 /// which has this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error
@@ -121,17 +131,24 @@ where
         const { assert!(NW + M::INSTANTS == NR + NZ, "the unknowns are those of the outputs with rates and those of z") };
         let inner = self.model.flow(terms, u);
         // At the extension's start `z = theta`: the regression is then known as a function of z.
-        let rate = self.model.regression(&M::Extension::new(SVector::zeros()), terms, u);
-        let plain = inner.lambda;
+        let start = M::Extension::new(SVector::zeros());
+        let rate = self.model.regression(&start, terms, u);
+        let held = self.model.primitive(&start, terms);
+        let slopes = self.model.output_slopes(terms, u);
+        let known = rate.known - slopes.rates * held.known;
+        let h = inner.h - slopes.cascade * held.known;
+        let factor = rate.factor - slopes.rates * held.factor;
+        let plain = inner.lambda - slopes.cascade * held.factor;
         let rates = NW - NZ;
         let lambda = SMatrix::from_fn(|i, j| match (i.checked_sub(rates), j.checked_sub(rates)) {
-            (_, None) => nalgebra::zero(),
-            (None, Some(j)) => rate.factor[(i, j)],
+            (None, None) => slopes.rates[(i, j)],
+            (None, Some(j)) => factor[(i, j)],
+            (Some(i), None) => slopes.cascade[(i, j)],
             (Some(i), Some(j)) => plain[(i, j)],
         });
         let h = SVector::from_fn(|i, _| match i.checked_sub(rates) {
-            None => rate.known[i],
-            Some(i) => inner.h[i],
+            None => known[i],
+            Some(i) => h[i],
         });
         Flow { lambda, h }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::{Fault, Flow, Functions, Model, Real, Rebase, Regression, Sides};
+use crate::{Fault, Flow, Functions, Model, OutputSlopes, Real, Rebase, Regression, Sides};
 
 /// A model whose recovered state is projected onto bounds `lower <= x <= upper`, component by component.
 ///
@@ -67,6 +67,10 @@ where
 
     fn primitive(&self, extension: &M::Extension, terms: &M::Terms) -> Sides<S, NR, NE> {
         self.model.primitive(extension, terms)
+    }
+
+    fn output_slopes(&self, terms: &M::Terms, u: &SVector<S, NU>) -> OutputSlopes<S, NR, NZ> {
+        self.model.output_slopes(terms, u)
     }
 
     fn theta(&self, eta: &SVector<S, NE>) -> SVector<S, NZ> {

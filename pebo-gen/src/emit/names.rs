@@ -89,7 +89,7 @@ const RESERVED: [&str; 62] = [
 ];
 
 /// Names that an emitted module declares or imports, and those of the prelude and of the trait's items that it uses.
-pub(super) const TYPES: [&str; 62] = [
+pub(super) const TYPES: [&str; 63] = [
     "AdaptiveLeastSquares",
     "Bounded",
     "Default",
@@ -129,6 +129,7 @@ pub(super) const TYPES: [&str; 62] = [
     "Ok",
     "Option",
     "OutputForm",
+    "OutputSlopes",
     "PI",
     "Parameters",
     "REGRESSION",

@@ -30,6 +30,7 @@ mod identifiability;
 mod identities;
 mod left_inverse;
 mod limited;
+mod output_slopes;
 mod parameters;
 mod pencil;
 mod permitted;
@@ -50,5 +51,6 @@ pub use design::{
     UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;
+pub use output_slopes::OutputSlopes;
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use pebo_cas::{Arena, Expr, Symbol};
-use pebo_design::analysis::{Derivation, LeftInverse, RegressionKind};
+use pebo_design::analysis::{Derivation, LeftInverse, OutputSlopes, RegressionKind};
 use pebo_design::program::{Interpreter, Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
@@ -42,6 +42,9 @@ pub(crate) struct Design {
     pub(crate) regression: Program,
     /// From the extension and y to the same sides under the derivative, in an implicit regression.
     pub(crate) primitive: Option<Program>,
+    /// From y, u to the slopes of the rates by the outputs: of the regression by rows, then of the cascade; in the output
+    /// form, where there are some.
+    pub(crate) slopes: Option<Program>,
     /// From eta to theta.
     pub(crate) theta: Program,
     /// From theta to eta, then its derivatives by rows, where eta has more components.
@@ -115,6 +118,10 @@ impl Design {
                     Some(compile(&[&extension, &y], &sides(&regression.primitive_0, &regression.primitive_1))?)
                 }
                 RegressionKind::Dynamic | RegressionKind::Static => None,
+            },
+            slopes: match OutputSlopes::of(plant, cascade, regression).filter(|_| settings.output) {
+                Some(slopes) => Some(compile(&at_sample, &[slopes.rates.concat(), slopes.cascade.concat()].concat())?),
+                None => None,
             },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
             functions: match regression.slopes(plant).filter(|_| !settings.output) {

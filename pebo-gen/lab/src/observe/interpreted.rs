@@ -9,8 +9,8 @@ use std::marker::PhantomData;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Extension, Fault, Flow, Functions, Fundamental, Gate, Integrator, Limits, Model, Observer, Regression,
-    Sides, Uncertain, Within,
+    Bounded, Extension, Fault, Flow, Functions, Fundamental, Gate, Integrator, Limits, Model, Observer, OutputSlopes,
+    Regression, Sides, Uncertain, Within,
 };
 
 use crate::settings::Prediction;
@@ -142,6 +142,7 @@ struct Derived<X, K, const N: usize> {
     cascade: RefCell<Interpreter>,
     regression: RefCell<Interpreter>,
     primitive: Option<RefCell<Interpreter>>,
+    slopes: Option<RefCell<Interpreter>>,
     theta: RefCell<Interpreter>,
     functions: Option<RefCell<Interpreter>>,
     phi_left: RefCell<Interpreter>,
@@ -169,6 +170,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             cascade: interpreter(&design.cascade),
             regression: interpreter(&design.regression),
             primitive: design.primitive.as_ref().map(interpreter),
+            slopes: design.slopes.as_ref().map(interpreter),
             theta: interpreter(&design.theta),
             functions: design.functions.as_ref().map(interpreter),
             phi_left: interpreter(&design.phi_left),
@@ -256,15 +258,33 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         let inner = self.cascade(y, u);
         let Some((rows, _)) = self.output else { return inner };
         // As the runtime's `OutputForm`, whose sizes are constants.
-        let rate = self.sides(&X::new(SVector::zeros()), y, u);
+        let start = X::new(SVector::zeros());
+        let (rate, held) = (self.sides(&start, y, u), self.primitive(&start, y));
+        let slopes = self.output_slopes(y, u);
+        let [known, rest] = [(rate.known, slopes.rates), (inner.h, slopes.cascade)].map(|(h, s)| h - s * held.known);
+        let [factor, plain] =
+            [(rate.factor, slopes.rates), (inner.lambda, slopes.cascade)].map(|(factor, s)| factor - s * held.factor);
         let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
         for i in 0..rows + self.nz {
-            h[i] = if i < rows { rate.known[i] } else { inner.h[i - rows] };
+            h[i] = if i < rows { known[i] } else { rest[i - rows] };
+            for j in 0..rows {
+                lambda[(i, j)] = if i < rows { slopes.rates[(i, j)] } else { slopes.cascade[(i - rows, j)] };
+            }
             for j in 0..self.nz {
-                lambda[(i, rows + j)] = if i < rows { rate.factor[(i, j)] } else { inner.lambda[(i - rows, j)] };
+                lambda[(i, rows + j)] = if i < rows { factor[(i, j)] } else { plain[(i - rows, j)] };
             }
         }
         Flow { lambda, h }
+    }
+
+    fn output_slopes(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> OutputSlopes<f64, N, N> {
+        let Some(slopes) = &self.slopes else {
+            return OutputSlopes { rates: SMatrix::zeros(), cascade: SMatrix::zeros() };
+        };
+        let mut slopes = slopes.borrow_mut();
+        let mut values = slopes.evaluate(|place| if place < self.ny { y[place] } else { u[place - self.ny] });
+        let rates = rows(&mut values.by_ref().take(self.nr * self.nr), self.nr);
+        OutputSlopes { rates, cascade: rows(&mut values, self.nr) }
     }
 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {

@@ -1,4 +1,4 @@
-//! The covariance of an observer's errors where measured outputs drive its cascade.
+//! The covariance of an observer's errors where samples drive its model.
 //!
 //! ```text
 //! e' = F e + G n + G n'        the extension goes on from the sample with the noise n to that with n'

@@ -4,11 +4,12 @@
 //! P(0) = D_x phi start^2 D_x phi^T     Q = D phi disturbance^2 D phi^T + D_y z' sensors^2 D_y z'^T dt
 //! ```
 //!
-//! of which the diagonals are taken. Measured outputs drive the cascade, so the noise of their sensors is process noise
-//! too. For a regression whose unknowns are functions of theta, both are carried over to these functions.
+//! of which the diagonals are taken. Samples drive the cascade where their outputs are no states of the observer: the noise
+//! of their sensors is process noise too, and `D_y z'` is without the slopes of the output form. For a regression whose
+//! unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, RegressionKind};
+use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind};
 use pebo_design::model::{Decimal, Form, Model};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
@@ -53,7 +54,7 @@ pub(super) fn derive(
     let frame = frame(model, plant, derivation, problems)?;
     let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
     let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
-    let formulas = Formulas::of(plant, derivation, kind == ObserverKind::Output || frame.gate.is_some())?;
+    let formulas = Formulas::of(plant, derivation, kind, frame.gate.is_some())?;
     let known = Point::of(model, plant);
     let asked = model.observer.known();
     if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
@@ -157,7 +158,9 @@ pub(super) fn derive(
 #[cfg(feature = "simulate")]
 fn is_elsewhere(plant: &Plant, derivation: &Derivation, formulas: &Formulas, kind: ObserverKind) -> bool {
     let depends = |slopes: &Slopes| slopes.by.iter().any(|slope| !plant.arena.is_zero(*slope));
-    let y = plant.y.iter().map(|output| output.symbol).collect();
+    let expected = if kind == ObserverKind::Output { expected(plant, derivation) } else { None };
+    let is_sampled = |output: &usize| !expected.iter().flatten().any(|expected| expected == output);
+    let y = (0..plant.y.len()).filter(is_sampled).map(|output| plant.y[output].symbol).collect();
     let left_inverse = derivation.left_inverse.result.as_ref();
     let recovered = left_inverse.is_some_and(|i| i.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y)));
     recovered || depends(&formulas.flow) || (kind == ObserverKind::Output && depends(&formulas.rates))
@@ -169,7 +172,7 @@ struct Coordinates {
     covariance: Vec<f64>,
     /// The variances of their drift in a second.
     drift: Vec<f64>,
-    /// Those of what the noise of the sensors adds, where outputs drive the cascade.
+    /// Those of what the noise of the sensors adds, where samples drive the cascade.
     sensed: Vec<f64>,
 }
 
@@ -330,11 +333,11 @@ fn completed<'a>(known: &Point<'a>, plant: &Plant, formulas: &Formulas, chi_0: &
 struct Formulas {
     /// phi with the values of outputs that are given by them, by x and y.
     phi: Slopes,
-    /// The rates of z, by y.
+    /// The rates of z, by the samples of y.
     flow: Slopes,
     /// The primitive under the derivative, by y.
     held: Slopes,
-    /// Its rate, or the residual of a static regression, by y.
+    /// Its rate, or the residual of a static regression, by the samples of y.
     rates: Slopes,
     /// The derivatives of these slopes by the unknowns, for each row.
     curvatures: Vec<Expr>,
@@ -347,10 +350,11 @@ struct Formulas {
 
 impl Formulas {
     /// The formulas of the whole regression where all equations serve, else of those with an unknown.
-    fn of(plant: &Plant, derivation: &Derivation, all_serve: bool) -> Option<Self> {
+    fn of(plant: &Plant, derivation: &Derivation, kind: ObserverKind, is_gated: bool) -> Option<Self> {
         let arena = &plant.arena;
         let cascade = derivation.cascade.result.as_ref()?;
-        let regression = &derivation.regression.result.as_ref()?.computed(arena, all_serve);
+        let is_output = kind == ObserverKind::Output;
+        let regression = &derivation.regression.result.as_ref()?.computed(arena, is_output || is_gated);
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let eta = regression.eta_symbols.clone();
@@ -391,12 +395,19 @@ impl Formulas {
             });
             slopes.collect::<Vec<_>>()
         };
+        let [mut flow, mut driven] = [&flow, &rates].map(|formulas| Slopes::new(plant, formulas, &y));
+        // Outputs that are states of the observer drive it as such, not by their samples.
+        if let Some(slopes) = OutputSlopes::of(plant, cascade, regression).filter(|_| is_output) {
+            let states: Vec<Symbol> = slopes.outputs.iter().map(|output| y[*output]).collect();
+            flow = flow.without(plant, &slopes.cascade, &states);
+            driven = driven.without(plant, &slopes.rates, &states);
+        }
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
-            flow: Slopes::new(plant, &flow, &y),
+            flow,
             curvatures: rates[rates.len() - instants..].iter().flat_map(bent).collect(),
             held: Slopes::new(plant, &held, &y),
-            rates: Slopes::new(plant, &rates, &y),
+            rates: driven,
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
             eta,
             instants,

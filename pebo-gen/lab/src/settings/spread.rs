@@ -20,6 +20,19 @@ impl Slopes {
         Self { formulas: formulas.to_vec(), symbols: symbols.to_vec(), by: formulas.iter().flat_map(by).collect() }
     }
 
+    /// The same without these slopes by these of the symbols, for each formula.
+    pub(super) fn without(mut self, plant: &Plant, slopes: &[Vec<Expr>], symbols: &[Symbol]) -> Self {
+        for (by, slopes) in self.by.chunks_mut(self.symbols.len().max(1)).zip(slopes) {
+            for (symbol, slope) in symbols.iter().zip(slopes) {
+                let place = self.symbols.iter().position(|known| known == symbol);
+                if let Some(by) = place.and_then(|place| by.get_mut(place)) {
+                    *by = plant.arena.sub(*by, *slope);
+                }
+            }
+        }
+        self
+    }
+
     /// The variance of each formula for these standard deviations of the symbols, by the slopes at a point.
     pub(super) fn variances(&self, point: &Point, deviations: &[f64]) -> Option<Vec<f64>> {
         let slopes = point.values(&self.by)?;

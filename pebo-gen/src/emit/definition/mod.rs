@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 use super::error::EmitError;
 use fundamental::constant_entries;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Symbol};
-use pebo_design::analysis::{Class, Derivation, LeftInverse, Outcome, Regression, RegressionKind};
+use pebo_design::analysis::{Class, Derivation, LeftInverse, Outcome, OutputSlopes, Regression, RegressionKind};
 use pebo_design::plant::{Plant, Settings};
 
 /// An argument of a function of `Model`.
@@ -84,6 +84,15 @@ pub(super) const ETA: &str = "eta";
 /// Their derivatives.
 pub(super) const SLOPES: &str = "slopes";
 
+/// The slopes of the rates by the outputs, of a model whose observer has these among its states.
+pub(super) const OUTPUT_SLOPES: &str = "output_slopes";
+
+/// Those of the known side of the regression.
+pub(super) const RATE_SLOPES: &str = "rate_slopes";
+
+/// Those of `h`.
+pub(super) const CASCADE_SLOPES: &str = "cascade_slopes";
+
 /// One function.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
@@ -104,11 +113,12 @@ pub(super) struct Group<'d> {
 
 /// The functions of `Model` by name: their arguments, `Y` for the terms of the sample, and the definitions whose values
 /// they give.
-pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 8] = [
+pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 9] = [
     (PERIODS, &[], &[PERIODS]),
     ("flow", &[Y, U], &["h", "lambda"]),
     ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
     ("primitive", &[Extension, Y], &["primitive_0", "primitive_1"]),
+    (OUTPUT_SLOPES, &[Y, U], &[RATE_SLOPES, CASCADE_SLOPES]),
     ("theta", &[Eta], &["theta"]),
     (FUNCTIONS, &[Theta], &[ETA, SLOPES]),
     ("recover", &[Z, Y], &["phi_left"]),
@@ -203,6 +213,14 @@ impl<'a> Definitions<'a> {
                 functions.push(matrix("primitive_1", "NR", "NE", &regression.primitive_1));
             }
         }
+        if let Some(slopes) =
+            OutputSlopes::of(plant, cascade, &regression).filter(|_| settings.is_some_and(|settings| settings.output))
+        {
+            let is_some = |rows: &[Vec<Expr>]| rows.iter().flatten().any(|slope| !arena.is_zero(*slope));
+            let members = [(RATE_SLOPES, "NR", slopes.rates), (CASCADE_SLOPES, "NZ", slopes.cascade)];
+            let members = members.into_iter().filter(|(.., entries)| is_some(entries));
+            functions.extend(members.map(|(name, size, entries)| matrix(name, size, "NR", &entries)));
+        }
         functions.push(vector("theta", "NZ", regression.theta.clone()));
         let slopes = regression.slopes(plant);
         let theta = if slopes.is_some() { plant.theta.clone() } else { Vec::new() };
@@ -267,6 +285,11 @@ impl<'a> Definitions<'a> {
     /// Tests whether the unknowns are functions of theta that a step computes.
     pub(super) fn has_functions(&self) -> bool {
         !self.theta.is_empty()
+    }
+
+    /// Tests whether the observer has outputs among its states.
+    pub(super) fn has_output_slopes(&self) -> bool {
+        self.functions.iter().any(|function| [RATE_SLOPES, CASCADE_SLOPES].contains(&function.name))
     }
 
     /// Tests whether equations hold at every instant beside those of rates.

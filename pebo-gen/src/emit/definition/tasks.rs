@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Argument, Definitions, VELOCITY};
+use super::{Argument, Definitions, OUTPUT_SLOPES, VELOCITY};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::RegressionKind;
 use pebo_design::program::{Cost, StagedPrograms, Task, UndeclaredSymbol, stage};
@@ -197,10 +197,10 @@ impl Affine {
     }
 }
 
-/// The work of a step: a sample once, flow, regression and primitives at both ends.
+/// The work of a step: a sample once, flow, regression, primitives and slopes at both ends.
 fn work(staged: &StagedPrograms, definitions: &Definitions) -> usize {
     let programs = definitions.groups().into_iter().zip(&staged.programs).map(|(group, program)| {
-        let times = if ["flow", "regression", "primitive"].contains(&group.name) { 2 } else { 1 };
+        let times = if ["flow", "regression", "primitive", OUTPUT_SLOPES].contains(&group.name) { 2 } else { 1 };
         times * Cost::of(program).weighted()
     });
     Cost::of(&staged.sample).weighted() + programs.sum::<usize>()

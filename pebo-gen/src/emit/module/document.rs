@@ -8,7 +8,10 @@ use super::abbreviation::Abbreviations;
 use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
-use crate::emit::definition::{Argument, Definitions, ETA, FUNCTIONS, Group, INSTANTS, PERIODS, SLOPES, VELOCITY};
+use crate::emit::definition::{
+    Argument, CASCADE_SLOPES, Definitions, ETA, FUNCTIONS, Group, INSTANTS, OUTPUT_SLOPES, PERIODS, RATE_SLOPES,
+    SLOPES, VELOCITY,
+};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
 use pebo_design::plant::Plant;
@@ -62,7 +65,8 @@ pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged
     let constants = staged.constants.iter().copied().collect();
     let states = plant.x.iter().map(|state| state.rate.expr);
     let outputs = plant.y.iter().flat_map(|output| [output.rate.as_ref(), output.value.as_ref()]).flatten();
-    let entries = definitions.functions.iter().flat_map(|definition| definition.rows.concat());
+    let shown = definitions.functions.iter().filter(|function| ![RATE_SLOPES, CASCADE_SLOPES].contains(&function.name));
+    let entries = shown.flat_map(|definition| definition.rows.concat());
     let terms = staged.terms.iter().map(|term| arena.substitute(term.1, &constants));
     let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(identities(plant));
     let all = all.chain(entries);
@@ -154,6 +158,8 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
             "theta" if is_linear(arena, definitions) => {}
             // The laws have the values, and with them their derivatives.
             ETA | SLOPES => {}
+            // Derivatives of `phi_0` and `h`.
+            RATE_SLOPES | CASCADE_SLOPES => {}
             "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
             _ => blocks.extend(formulas::of((arena, abbreviations), definitions, definition, MODULE)),
         }
@@ -383,6 +389,10 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
         FUNCTIONS => {
             "The unknowns `eta` of the regression as functions of `theta`, among whose values an observer keeps its \
              estimate, and their derivatives, written by columns: one for each component of `theta`."
+        }
+        OUTPUT_SLOPES => {
+            "The derivatives of `phi_0` and `h` by the outputs whose rates the regression has: an observer in output form has \
+             these outputs among its states. Written by columns, one for each of them."
         }
         PERIODS => "The periods of the outputs that are angles, 0 for the others: the observer counts their turns.",
         VELOCITY => {

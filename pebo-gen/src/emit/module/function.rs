@@ -10,7 +10,9 @@ use quote::quote;
 
 use super::{Module, Scope, doc, document, permission};
 use crate::emit::definition::tasks::varying;
-use crate::emit::definition::{Argument, Definition, FUNCTIONS, Group, Part, Shape, VELOCITY};
+use crate::emit::definition::{
+    Argument, CASCADE_SLOPES, Definition, FUNCTIONS, Group, OUTPUT_SLOPES, Part, RATE_SLOPES, Shape, VELOCITY,
+};
 use crate::emit::expression::{Piece, ident};
 use pebo_cas::Symbol;
 use pebo_design::program::{Operand, Program};
@@ -76,10 +78,11 @@ impl Module<'_> {
             statements.extend(body.statements);
             variables = body.variables;
             let mut entries = body.outputs.as_slice();
+            let mut columns = 0;
             let value = |member: &&Definition| {
                 let (own, rest) = entries.split_at(member.rows.iter().map(Vec::len).sum());
                 entries = rest;
-                result(member, own, &mut statements)
+                result(member, own, &mut columns, &mut statements)
             };
             group.members.iter().map(value).collect()
         };
@@ -116,6 +119,14 @@ impl Module<'_> {
             "flow" => (quote!(Flow<#scalar, NZ>), quote!(Flow { h: #first, lambda: #second })),
             "regression" | "primitive" => {
                 (quote!(Sides<#scalar, NR, NE>), quote!(Sides { known: #first, factor: #second }))
+            }
+            OUTPUT_SLOPES => {
+                let of = |name| {
+                    let place = group.members.iter().position(|member| member.name == name);
+                    place.and_then(|place| values.get(place)).unwrap_or(&zeros)
+                };
+                let (rates, cascade) = (of(RATE_SLOPES), of(CASCADE_SLOPES));
+                (quote!(OutputSlopes<#scalar, NR, NZ>), quote!(OutputSlopes { rates: #rates, cascade: #cascade }))
             }
             FUNCTIONS => (
                 quote!(Option<Functions<#scalar, NE, NZ>>),
@@ -180,8 +191,13 @@ pub(in crate::emit) fn pattern(part: &Part, reads: impl Fn(usize) -> bool, first
     quote!([#(#columns),*])
 }
 
-/// The returned value: a vector, or a matrix by its columns.
-fn result(definition: &Definition, entries: &[Piece], statements: &mut Vec<TokenStream>) -> TokenStream {
+/// The returned value: a vector, or a matrix by its columns, which are numbered through the function; so many have names.
+fn result(
+    definition: &Definition,
+    entries: &[Piece],
+    named: &mut usize,
+    statements: &mut Vec<TokenStream>,
+) -> TokenStream {
     let columns = definition.rows.first().map_or(0, Vec::len);
     let column = |column: usize| {
         let entries = entries.iter().skip(column).step_by(columns).map(|entry| &entry.tokens);
@@ -197,7 +213,8 @@ fn result(definition: &Definition, entries: &[Piece], statements: &mut Vec<Token
             quote!(SMatrix::from([#only]))
         }
         (Shape::Matrix(..), _) => {
-            let names: Vec<_> = (1..=columns).map(|number| ident(&format!("column_{number}"))).collect();
+            let names: Vec<_> = (1..=columns).map(|number| ident(&format!("column_{}", *named + number))).collect();
+            *named += columns;
             for (index, name) in names.iter().enumerate() {
                 let column = column(index);
                 statements.push(quote!(let #name = #column;));

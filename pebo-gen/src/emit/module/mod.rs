@@ -199,6 +199,7 @@ impl Module<'_> {
         names.extend(self.programs().any(expression::calls).then_some("Real"));
         names.extend((self.definitions.class == Class::Pebo).then_some("Extension"));
         names.extend(self.definitions.has_functions().then_some("Functions"));
+        names.extend(self.definitions.has_output_slopes().then_some("OutputSlopes"));
         names.extend(self.rebase.then_some("Rebase"));
         names.extend((!self.asked.is_empty()).then_some("Fault"));
         names.extend(self.constructors_use());

@@ -309,11 +309,11 @@ fn model(
     Ok(())
 }
 
-/// The value that a field of the runtime's `Flow`, `Sides` or `Functions` holds, of those that a function gives.
+/// The value that a field of the runtime's `Flow`, `Sides`, `Functions` or `OutputSlopes` holds, of those that a function gives.
 fn member(field: &str, members: &'static [&'static str]) -> Option<&'static str> {
     match field {
-        "h" | "known" | "values" => members.first().copied(),
-        "lambda" | "factor" | "slopes" => members.get(1).copied(),
+        "h" | "known" | "values" | "rates" => members.first().copied(),
+        "lambda" | "factor" | "slopes" | "cascade" => members.get(1).copied(),
         _ => None,
     }
 }

@@ -147,21 +147,36 @@ fn states_are_kept_within_bounds() {
     assert!(text.contains("Within<Cuk, f64, NX>,"), "{text}");
 }
 
-#[test]
-fn the_output_form_may_expect_its_outputs() {
+/// Least squares in the output form.
+fn output_form() -> Settings<Rational> {
     let start = ["0.01", "0.01", "25", "400"].map(number).to_vec();
     let covariance = Covariance { start, forgetting: number("0"), process_noise: None };
-    let given = Settings {
+    Settings {
         operator: Operator::Sampled(numbers(["0.1", "0.1"])),
         output: true,
-        expected: Some(vec![0, 1]),
         chi_0: vec![number("0"); 4],
         rebase: Some(Rebase::Samples(number("1"))),
         ..settings(Estimator::LeastSquares(covariance))
-    };
+    }
+}
+
+#[test]
+fn the_output_form_may_expect_its_outputs() {
+    let given = Settings { expected: Some(vec![0, 1]), ..output_form() };
     let text = tuned(&given);
     assert!(text.contains("pub const ROWS: [usize; NR] = [0, 1];"), "{text}");
     assert!(text.contains("let model = OutputForm::expecting(model, ROWS)?;"), "{text}");
+}
+
+#[test]
+fn the_output_form_has_the_slopes_of_all_rates() {
+    let given = output_form();
+    let slopes = function(&tuned(&given), "output_slopes").to_owned();
+    // The columns of the one matrix have other names than those of the other.
+    assert!(slopes.contains("rates: SMatrix::from([column_1, column_2])"), "{slopes}");
+    assert!(slopes.contains("cascade: SMatrix::from([column_3, column_4])"), "{slopes}");
+    refuse_changed(&given, &[("from([column_3, column_4])", "from([column_1, column_2])")]);
+    assert!(!tuned(&gradient()).contains("output_slopes"), "a filter has none");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 
 use pebo_runtime::nalgebra::{Matrix2, Matrix2x4, Matrix4, SMatrix, SVector, Vector1, Vector2, Vector3, Vector4};
 use pebo_runtime::{
-    Fault, Flow, Fundamental, LeastSquares, Model, Observer, OutputForm, Rebase, Regression, RegressionOperator,
-    SampledRegression, Sides, Within,
+    Fault, Flow, Fundamental, LeastSquares, Model, Observer, OutputForm, OutputSlopes, Rebase, Regression,
+    RegressionOperator, SampledRegression, Sides, Within,
 };
 
 use crate::converter::{Case, CaseOne, Loop};
@@ -134,14 +134,74 @@ fn a_plant_free_of_its_outputs_is_the_kalman_filter() -> Result<(), Fault> {
     Ok(())
 }
 
+/// `y' = -(1/2 + u/10) y + z1`, `z1' = -2/5 z1 + 3 z2 + u - 2 y`, `z2' = -3 z1 + z2/5 - y`: an output drives both.
+#[derive(Clone, Debug)]
+struct Driven;
+
+/// `Lambda` of both models of the test by z.
+const TURNING: Matrix2<f64> = Matrix2::new(-0.4, 3.0, -3.0, 0.2);
+
+impl Model<2, 1, 1, 2, 1, 2> for Driven {
+    type Scalar = f64;
+    type Extension = Fundamental<f64, 2>;
+    type X = SVector<Self::Scalar, 2>;
+    type Y = SVector<Self::Scalar, 1>;
+    type U = SVector<Self::Scalar, 1>;
+    type Terms = Vector1<f64>;
+    const REGRESSION: Regression = Regression::Dynamic;
+
+    fn terms(&self, y: &Vector1<f64>) -> Vector1<f64> {
+        *y
+    }
+    fn flow(&self, y: &Vector1<f64>, u: &Vector1<f64>) -> Flow<f64, 2> {
+        Flow { lambda: TURNING, h: Vector2::new(u.x - 2.0 * y.x, -y.x) }
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Vector1<f64>, u: &Vector1<f64>) -> Sides<f64, 1, 2> {
+        let seen = SMatrix::<f64, 1, 2>::new(1.0, 0.0);
+        let known = self.output_slopes(y, u).rates * y + seen * extension.xi();
+        Sides { known, factor: seen * extension.psi() }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Vector1<f64>) -> Sides<f64, 1, 2> {
+        Sides { known: *y, factor: SMatrix::zeros() }
+    }
+    fn output_slopes(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> OutputSlopes<f64, 1, 2> {
+        OutputSlopes { rates: SMatrix::from([[-0.5 - 0.1 * u.x]]), cascade: Vector2::new(-2.0, -1.0) }
+    }
+    fn theta(&self, eta: &Vector2<f64>) -> Vector2<f64> {
+        *eta
+    }
+    fn recover(&self, z: &Vector2<f64>, _: &Vector1<f64>) -> Vector2<f64> {
+        *z
+    }
+}
+
+impl Rebase<2, 1, 1, 2, 1> for Driven {}
+
 #[test]
 fn the_output_form_of_a_plant_free_of_its_outputs_is_too() -> Result<(), Fault> {
+    let [a, b, c, d] = [TURNING.m11, TURNING.m12, TURNING.m21, TURNING.m22];
+    let whole = SMatrix::<f64, 3, 3>::new(0.0, 1.0, 1.0, 0.0, a, b, 0.0, c, d);
+    is_the_kalman_filter(Pair::<f64>::new([a, b, c, d]), |_| whole)
+}
+
+#[test]
+fn with_slopes_the_output_form_of_a_plant_that_its_output_drives_is_too() -> Result<(), Fault> {
+    let [a, b, c, d] = [TURNING.m11, TURNING.m12, TURNING.m21, TURNING.m22];
+    is_the_kalman_filter(Driven, |u| SMatrix::<f64, 3, 3>::new(-0.5 - 0.1 * u, 1.0, 0.0, -2.0, a, b, -1.0, c, d))
+}
+
+/// Compares the output form of a model with the Kalman filter of the plant with this matrix for an input, which drives
+/// the first of the coordinates.
+fn is_the_kalman_filter<M>(model: M, whole: impl Fn(f64) -> SMatrix<f64, 3, 3>) -> Result<(), Fault>
+where
+    M: Rebase<2, 1, 1, 2, 1>
+        + Model<2, 1, 1, 2, 1, 2, Scalar = f64, X = Vector2<f64>, Y = Vector1<f64>, U = Vector1<f64>>,
+{
     let (dt, sigma) = (1e-2, 0.05);
-    let lambda = [-0.4, 3.0, -3.0, 0.2];
     let (prior, process) = (Vector3::new(2.0, 4.0, 4.0), Vector3::new(0.0, 0.1, 0.3));
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&process)?;
     let sampled = SampledRegression::new(&Vector1::new(sigma))?;
-    let model = OutputForm::<_, 1, 2>::new(Pair::<f64>::new(lambda));
+    let model = OutputForm::<_, 1, 2>::new(model);
     let mut observer = Observer::with_regression(model, squares, sampled, Vector3::zeros())?.rebasing(1)?;
     let mut kalman = Kalman {
         // The first sample is where the observer begins.
@@ -151,12 +211,6 @@ fn the_output_form_of_a_plant_free_of_its_outputs_is_too() -> Result<(), Fault> 
         sensor: Vector1::new(sigma * sigma),
         process,
     };
-    #[rustfmt::skip]
-    let whole = SMatrix::<f64, 3, 3>::new(
-        0.0, 1.0, 1.0,
-        0.0, lambda[0], lambda[1],
-        0.0, lambda[2], lambda[3],
-    );
     let mut noise = Noise::new(6);
     observer.step(Vector1::new(0.3), Vector1::zeros(), dt)?;
     let mut largest = 0.0_f64;
@@ -165,7 +219,7 @@ fn the_output_form_of_a_plant_free_of_its_outputs_is_too() -> Result<(), Fault> 
         let (y, u) = (Vector1::new((3.0 * t).sin() + sigma * noise.normal()), Vector1::new((0.2 * t).cos()));
         let innovation = observer.innovation(y, u, dt)?;
         let estimate: Vector2<f64> = observer.step(y, u, dt)?;
-        let square = kalman.step(&whole, &Vector3::new(0.0, u.x, 0.0), &y, dt);
+        let square = kalman.step(&whole(u.x), &Vector3::new(0.0, u.x, 0.0), &y, dt);
         // The process noise of the interval is taken at its other end: a part `lambda dt` of what little it is.
         assert!((innovation.normalised_square - square).abs() < 2e-3 * square.max(0.1), "{innovation:?} {square}");
         let errors = observer.standard_error().expect("a linear left inverse");
