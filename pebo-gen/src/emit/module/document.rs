@@ -156,10 +156,8 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
         match definition.name {
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if is_linear(arena, definitions) => {}
-            // The laws have the values, and with them their derivatives.
-            ETA | SLOPES => {}
-            // Derivatives of `phi_0` and `h`.
-            RATE_SLOPES | CASCADE_SLOPES => {}
+            // The laws and formulas have the values, and with them their derivatives.
+            ETA | SLOPES | RATE_SLOPES | CASCADE_SLOPES => {}
             "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
             _ => blocks.extend(formulas::of((arena, abbreviations), definitions, definition, MODULE)),
         }
