@@ -171,7 +171,7 @@ fn the_output_form_may_expect_its_outputs() {
 #[test]
 fn the_output_form_has_the_slopes_of_all_rates() {
     let given = output_form();
-    let slopes = function(&tuned(&given), "output_slopes").to_owned();
+    let slopes = function(&tuned(&given), "output_slopes");
     // The columns of the one matrix have other names than those of the other.
     assert!(slopes.contains("rates: SMatrix::from([column_1, column_2])"), "{slopes}");
     assert!(slopes.contains("cascade: SMatrix::from([column_3, column_4])"), "{slopes}");
