@@ -12,8 +12,8 @@ use pebo_cas::{Arena, Expr, Symbol};
 
 use super::design::{Cascade, Regression};
 
-/// Derivatives of the known terms of the rates by outputs; 0 where a rate is not differentiable in the output wherever it
-/// has a value, so that a sample at which it has a value is never refused.
+/// Derivatives of the known terms of the rates by outputs; 0 where the known terms of a rate are not differentiable in the
+/// output wherever they have a value, so that no slope refuses a sample.
 #[derive(Clone, Debug)]
 pub struct OutputSlopes {
     /// The positions in the plant's outputs of those whose rates are the first rows of the regression.
