@@ -3,8 +3,8 @@
 //! The public face of the crate `pebo-lab`.
 
 pub use pebo_lab::{
-    Certainty, Ensemble, Estimate, EstimateScore, Excitation, Failure, Faults, KnownNumbers, Numbers, Overrides,
-    Quantiles, SETTLED, Scenario, Score, Spread, Summary, Trace, Value, recording as replay,
+    Certainty, Ensemble, Estimate, EstimateScore, Excitation, Failure, Faults, KnownNumbers, Numbers, OutsideDomain,
+    Overrides, Quantiles, SETTLED, Scenario, Score, Spread, Summary, Trace, Value, recording as replay,
 };
 
 /// The figure of a run, as SVG.

@@ -53,6 +53,8 @@ pub use observe::excitation::Excitation;
 #[cfg(feature = "simulate")]
 pub use overrides::Overrides;
 #[cfg(feature = "simulate")]
+pub use score::domain::OutsideDomain;
+#[cfg(feature = "simulate")]
 pub use score::faults::Faults;
 #[cfg(feature = "simulate")]
 pub use score::{SETTLED, Score};

@@ -43,7 +43,7 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
         terminal::say(&answer.summary);
     }
     if let Some(replayed) = &answer.replay {
-        terminal::say(&replayed.text());
+        standard::summarise(&replayed.text(), options.csv.as_deref())?;
     }
     terminal::report(&answer.diagnostics, &source);
     let Answer { standing, replay: Some(replayed), .. } = answer else { return Ok(answer.standing) };

@@ -6,7 +6,7 @@ use pebo_gen::source::Source;
 use pebo_gen::{RunRequest, Standing};
 
 use super::arguments::{Limit, SimulateOptions};
-use super::{files, progress, terminal};
+use super::{files, progress, standard, terminal};
 
 pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
     if let Some(diagnostic) = options.plot.as_deref().and_then(files::not_a_figure) {
@@ -29,7 +29,10 @@ pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
         terminal::say(&answer.summary);
     }
     if let Some(run) = &answer.run {
-        terminal::say(&run.ensemble.as_ref().map_or_else(|| run.summary.text(), Ensemble::text));
+        let text = run.ensemble.as_ref().map_or_else(|| run.summary.text(), Ensemble::text);
+        if let Err(diagnostic) = standard::summarise(&text, options.csv.as_deref()) {
+            return standard::refuse(diagnostic);
+        }
     }
     terminal::report(&answer.diagnostics, &source);
     let Some(run) = answer.run else { return answer.standing };

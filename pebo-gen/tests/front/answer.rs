@@ -77,7 +77,7 @@ fn a_run_has_its_final_errors_and_the_requested_results() {
     let written = std::fs::read_to_string(&csv).expect("a table");
     std::fs::remove_file(&csv).expect("it was written");
     assert_eq!(written, run.trace.as_ref().expect("requested").csv());
-    assert_eq!(text(&output.stderr), run.summary.text());
+    assert_eq!(text(&output.stdout), run.summary.text());
     assert!(run.figure.expect("requested").starts_with("<svg"));
 }
 

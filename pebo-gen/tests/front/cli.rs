@@ -298,7 +298,7 @@ fn a_run_is_summed_up() {
         spring(", noise: {q: 1e-4}, dropped: 0.1, baselines: {kalman: {}}").replace("duration: 10", "duration: 20");
     let model = folder.file("spring.yaml", long);
     let output = run(&["simulate", &model, "--seed", "3"]);
-    let said = text(&output.stderr);
+    let said = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{said}");
     let lines: Vec<&str> = said.lines().collect();
     assert!(lines[0].starts_with("error of") && lines[0].contains("settled to 1 %"), "{said}");
@@ -308,8 +308,11 @@ fn a_run_is_summed_up() {
     }
     assert!(!said.contains("not-converged"), "{said}");
     // The same seed is the same run, another one is another.
-    assert_eq!(said, text(&run(&["simulate", &model, "--seed", "3"]).stderr));
-    assert_ne!(said, text(&run(&["simulate", &model, "--seed", "4"]).stderr));
+    assert_eq!(said, text(&run(&["simulate", &model, "--seed", "3"]).stdout));
+    assert_ne!(said, text(&run(&["simulate", &model, "--seed", "4"]).stdout));
+    // Where the table goes to standard output, the summary does not stand in it.
+    let output = run(&["simulate", &model, "--seed", "3", "--csv", "-"]);
+    assert!(text(&output.stderr) == said && text(&output.stdout).starts_with("t,v,q"), "{}", text(&output.stdout));
 }
 
 #[test]
@@ -333,7 +336,7 @@ fn many_runs_have_a_table_a_figure_and_quantiles() {
     let model = folder.file("spring.yaml", spring(", noise: {q: 1e-3}, baselines: {kalman: {}}"));
     let [plot, csv] = ["band.svg", "band.csv"].map(|name| folder.path(name).display().to_string());
     let output = run(&["simulate", &model, "--runs", "5", "--plot", &plot, "--csv", &csv]);
-    let said = text(&output.stderr);
+    let said = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(said.contains("rms then, median") && said.contains("runs: 5 with the seeds 1 to 5"), "{said}");
     let table = std::fs::read_to_string(&csv).expect("a table");

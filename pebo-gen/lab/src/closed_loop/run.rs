@@ -60,6 +60,7 @@ impl Scenario {
         let mut scores: Vec<Scorer> = self.scored.iter().map(|scored| Scorer::new(scored.period)).collect();
         let (mut watch, mut expected) = (ExcitationMonitor::default(), ExpectedErrors::default());
         let mut certain = CertaintyMonitor::new(&self.design.wanted);
+        let mut assumed = self.assumed.watch();
         let mut outside = vec![false; self.scored.len()];
         let samples = self.timing.samples;
         let stride = (samples / REPORTS).max(1);
@@ -69,6 +70,7 @@ impl Scenario {
             }
             machine.control()?;
             let table = &machine.table;
+            assumed.look(table[TIME], table);
             let errors = errors.of(table);
             for ((score, scored), error) in scores.iter_mut().zip(&self.scored).zip(errors) {
                 score.add(table[TIME], *error, table[scored.truth]);
@@ -108,6 +110,7 @@ impl Scenario {
             dropped: machine.driver.dropped(),
             parted: machine.driver.parted(),
             restarts: machine.driver.restarts(),
+            outside: assumed.outside(),
             surprise: machine.driver.surprise(),
             certainty: certain.certainty(),
             known: self.design.settings.known.clone(),
@@ -169,7 +172,7 @@ impl<'a> LoopState<'a> {
         let mut machine = Self {
             scenario,
             table: vec![0.0; layout.symbols.len()],
-            driver: ObserverDriver::new(observer(&scenario.design).map_err(refused)?),
+            driver: ObserverDriver::new(observer(&scenario.design).map_err(refused)?, scenario.design.names.clone()),
             sensor_state: scenario.sensors.begin(scenario.seed, scenario.timing.slack()),
             flow: Flow::new(
                 (&scenario.rates, Some(&scenario.slopes)),
@@ -189,8 +192,14 @@ impl<'a> LoopState<'a> {
         };
         machine.read_signals();
         let mut start = Formulas::new(&scenario.start);
-        // Baselines start from the sensors' samples of the plant's start.
-        for _ in 0..2 {
+        // An output with feedthrough has the input that the law would have set before the start, a law may have the
+        // output, and baselines start from the sensors' samples: one round each.
+        for _ in 0..3 {
+            machine.set_inputs();
+            let layout = &scenario.layout;
+            let inputs = &mut machine.table[layout.u.clone()];
+            // The law may need what is not there yet.
+            inputs.iter_mut().filter(|input| !input.is_finite()).for_each(|input| *input = 0.0);
             let state = start.of(&machine.table);
             machine.table[layout.state.clone()].copy_from_slice(state);
             machine.sensor_state = scenario.sensors.begin(scenario.seed, scenario.timing.slack());
@@ -257,10 +266,13 @@ impl<'a> LoopState<'a> {
 
     /// Sets the inputs for the interval to come.
     pub(crate) fn control(&mut self) -> Result<(), Failure> {
+        self.set_inputs();
+        self.admit(self.scenario.layout.u.clone())
+    }
+
+    fn set_inputs(&mut self) {
         let inputs = self.control.of(&self.table);
-        let place = self.scenario.layout.u.clone();
-        self.table[place.clone()].copy_from_slice(inputs);
-        self.admit(place)
+        self.table[self.scenario.layout.u.clone()].copy_from_slice(inputs);
     }
 
     fn read_signals(&mut self) {

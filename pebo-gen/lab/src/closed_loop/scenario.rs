@@ -30,6 +30,7 @@ use super::{control, ode};
 use crate::figure::panel::Panel;
 use crate::observe::design::{Design, program};
 use crate::overrides::Overrides;
+use crate::score::domain::AssumedDomain;
 use crate::summary::advice::{Origin, advise};
 use crate::summary::{Estimate, Summary};
 use crate::timing::Timing;
@@ -83,6 +84,8 @@ pub struct Scenario {
     pub(crate) panels: Vec<Panel>,
     /// The values of the panels' curves.
     pub(crate) curves: Program,
+    /// What the plant's author assumes of it.
+    pub(crate) assumed: AssumedDomain,
     /// The names of the trace's columns.
     pub(crate) columns: Vec<String>,
     /// The names of the table's values.
@@ -159,7 +162,13 @@ impl Scenario {
             }
             _ => failure.help().to_owned(),
         };
-        Diagnostic::error(code, self.span, failure.to_string()).help(help)
+        let message = match failure {
+            Failure::Refused { at, fault } => {
+                format!("the observer refused the sample at t = {at} s: {}", self.design.names.words(*fault))
+            }
+            _ => failure.to_string(),
+        };
+        Diagnostic::error(code, self.span, message).help(help)
     }
 
     /// The names of the inputs.
@@ -243,9 +252,6 @@ impl Resolution<'_> {
                     .help(format!("the simulator has room for {}", ode::LARGEST)),
             );
         }
-        if let Some(share) = overrides.initial_error {
-            begin(&names, (&layout, &signals), &start, share, &mut design.settings.chi_0);
-        }
         let columns = columns(plant, &design.recovered, &baselines);
         problems.keep(admit_table(&timing, columns.len()));
         let followers = followers(plant, &layout, &mut baselines);
@@ -259,6 +265,10 @@ impl Resolution<'_> {
         let (scored, errors) =
             scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &baselines);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
+        let control = compile(&control)?;
+        if let Some(share) = overrides.initial_error {
+            begin(&names, (&layout, &signals, &control), &start, share, &mut design.settings.chi_0);
+        }
         Some(Scenario {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
             estimator: estimator_text(&names.model.observer),
@@ -276,11 +286,14 @@ impl Resolution<'_> {
             switches: switches?,
             baseline_estimates: compile(&estimates)?,
             followers,
-            control: compile(&control)?,
+            control,
             scored,
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
             panels: panels.panels,
+            assumed: AssumedDomain::of(plant, &layout.symbols, |assumed| {
+                compile(&arena.substitute_all(assumed, &numbers))
+            })?,
             names: layout.names(arena, &(0..layout.symbols.len())),
             timing,
             design,
@@ -300,7 +313,7 @@ fn moving_state(names: &Names) -> Option<String> {
     of_plant().all(|name| is_state(&name)).then(|| of_plant().next().cloned())?
 }
 
-/// x, y and the baselines' states at the start, with inputs 0.
+/// x, y and the baselines' states at the start.
 fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems: &mut Diagnostics) -> Vec<Expr> {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol);
@@ -318,15 +331,25 @@ fn start(names: &Names, truth: &Truth, baselines: &[ResolvedBaseline], problems:
 }
 
 /// The extension at the start, with the share of its error that the call asks for.
-fn begin(names: &Names, (layout, signals): (&Layout, &[Signal]), start: &[Expr], share: f64, chi_0: &mut [f64]) {
+fn begin(
+    names: &Names,
+    (layout, signals, control): (&Layout, &[Signal], &Program),
+    start: &[Expr],
+    share: f64,
+    chi_0: &mut [f64],
+) {
     let (plant, arena) = (names.plant, &names.plant.arena);
     let states = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
     let at: BTreeMap<Symbol, Expr> = states.zip(start.iter().copied()).chain(names.numbers()).collect();
-    // The inputs are still 0, as for states that depend on them.
     let mut table = vec![0.0; layout.symbols.len()];
     for (position, signal) in layout.signals.clone().zip(signals) {
         table[position] = signal.course().value(0.0);
     }
+    // Before the first sample the law knows no estimate.
+    let mut inputs = vec![0.0; layout.u.len()];
+    Interpreter::new(control).run(&table, &mut inputs);
+    let inputs = inputs.into_iter().map(|input| if input.is_finite() { input } else { 0.0 });
+    table.splice(layout.u.clone(), inputs);
     for (formula, chi) in plant.phi.iter().zip(chi_0) {
         let mut value = [f64::NAN];
         if let Ok(program) = layout.program(arena, &[arena.substitute(formula.expr, &at)], Span::NOWHERE) {

@@ -12,6 +12,7 @@ use super::request::Request;
 use super::setup::Settings;
 use super::sizes::LARGEST;
 use crate::score::SETTLED;
+use crate::score::faults::SignalNames;
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -26,6 +27,8 @@ pub(crate) struct Design {
     pub(crate) outputs: usize,
     /// The number of inputs u.
     pub(crate) inputs: usize,
+    /// The names of both.
+    pub(crate) names: SignalNames,
     /// The number of coordinates z.
     pub(crate) coordinates: usize,
     /// The number of equations of the regression.
@@ -134,6 +137,10 @@ impl Design {
             rows: regression.rows(),
             outputs: plant.y.len(),
             inputs: plant.u.len(),
+            names: SignalNames {
+                outputs: y.iter().map(|output| arena.name(*output)).collect(),
+                inputs: plant.u.iter().map(|input| arena.name(*input)).collect(),
+            },
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
             unknown_names: starts

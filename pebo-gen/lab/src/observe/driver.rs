@@ -8,7 +8,7 @@ use pebo_runtime::{Fault, Gap};
 
 use super::interpreted::DynObserver;
 use super::sizes::{LARGEST, pad};
-use crate::score::faults::Faults;
+use crate::score::faults::{Faults, SignalNames};
 
 /// The most refused samples in a row: an observer that refuses as many has lost its state, and a later sample will not
 /// restore it.
@@ -25,6 +25,7 @@ pub(crate) struct ObserverDriver {
     gap: Option<Gap<f64, LARGEST>>,
     started: bool,
     refused: u64,
+    names: SignalNames,
     faults: Faults,
     dropped: u64,
     /// The samples that lacked outputs.
@@ -36,13 +37,14 @@ pub(crate) struct ObserverDriver {
 }
 
 impl ObserverDriver {
-    /// The observer before the first sample.
-    pub(crate) fn new(observer: Box<dyn DynObserver>) -> Self {
+    /// The observer before the first sample; the names are those of its signals.
+    pub(crate) fn new(observer: Box<dyn DynObserver>, names: SignalNames) -> Self {
         Self {
             observer,
             gap: None,
             started: false,
             refused: 0,
+            names,
             faults: Faults::default(),
             dropped: 0,
             parted: 0,
@@ -82,7 +84,7 @@ impl ObserverDriver {
             self.parted += u64::from(is_parted);
             return Ok(());
         };
-        self.faults.add(fault);
+        self.faults.add(fault, &self.names);
         // Samples out of the range of their sensor say nothing of the observer, however many there are.
         self.refused += u64::from(!matches!(fault, Fault::OutputRange { .. } | Fault::InputRange { .. }));
         if self.started {

@@ -19,6 +19,7 @@ use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
 use crate::score::Scorer;
+use crate::score::domain::DomainMonitor;
 use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary};
 use pebo_design::program::Interpreter;
@@ -97,6 +98,7 @@ struct ReplayState<'a, 'w> {
     watch: ExcitationMonitor,
     expected: ExpectedErrors,
     certain: CertaintyMonitor<'a>,
+    assumed: DomainMonitor<'a>,
     rows: u64,
     samples: u64,
     /// The first instant, and that of the last accepted sample.
@@ -119,7 +121,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             values: vec![0.0; signals.program.outputs.len()],
             table: vec![0.0; layout.len()],
             last_outputs: vec![None; layout.y.len()],
-            driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?),
+            driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?, design.names.clone()),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.measured.len()]),
             faults: RowFaults::default(),
@@ -130,6 +132,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             watch: ExcitationMonitor::default(),
             expected: ExpectedErrors::default(),
             certain: CertaintyMonitor::new(&design.wanted),
+            assumed: replay.assumed.watch(),
             rows: 0,
             samples: 0,
             first: None,
@@ -203,6 +206,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
                 self.faults.count(RowFault::Input(input), line);
             }
         }
+        self.assumed.look(t, &self.table);
         if accepted {
             // Residuals need a sample with all outputs.
             if self.is_whole() {
@@ -343,6 +347,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
                 dropped: 0,
                 parted: self.driver.parted(),
                 restarts: self.driver.restarts(),
+                outside: self.assumed.outside(),
                 surprise: self.driver.surprise(),
                 certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),

@@ -7,6 +7,7 @@ use crate::closed_loop::scenario::{Periods, ScoredEstimate, scored};
 use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
 use crate::observe::request::Request;
+use crate::score::domain::AssumedDomain;
 use crate::summary::advice::{Origin, advise};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -36,6 +37,8 @@ pub struct Replay {
     /// Their errors.
     pub(super) errors: Program,
     pub(super) residuals: Residuals,
+    /// What the plant's author assumes of it.
+    pub(super) assumed: AssumedDomain,
     pub(super) panels: Panels,
     /// The names of the columns that are written.
     pub(super) columns: Vec<String>,
@@ -95,6 +98,9 @@ fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut 
     let (scored, errors) = scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &compared, &[]);
     let states: Vec<Symbol> = measured.iter().map(|place| layout.estimated[*place].0).collect();
     let errors = problems.keep(layout.program(arena, &errors, span))?;
+    let assumed = AssumedDomain::of(plant, &layout.symbols, |assumed| {
+        problems.keep(layout.program(arena, &arena.substitute_all(assumed, &numbers), span))
+    })?;
     let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
     Some(Replay {
         title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
@@ -113,6 +119,7 @@ fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut 
         scored,
         errors,
         residuals,
+        assumed,
         span,
     })
 }

@@ -4,6 +4,7 @@
 //! state's largest absolute value, and its size from then on. Knows nothing of plants or observers, and keeps some
 //! thousand numbers in a run of any length: the threshold is known only at its end.
 
+pub(crate) mod domain;
 pub(crate) mod expected;
 pub(crate) mod faults;
 

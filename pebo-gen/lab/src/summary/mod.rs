@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::score::Score;
 use crate::observe::certainty::Certainty;
 use crate::observe::excitation::Excitation;
+use crate::score::domain::OutsideDomain;
 use crate::score::faults::Faults;
 use crate::settings::{KnownNumbers, Numbers, Value};
 
@@ -32,6 +33,8 @@ pub struct Summary {
     pub parted: u64,
     /// The number of restarts of the model's observer after gaps that were too long.
     pub restarts: u64,
+    /// The assumptions of the plant that did not hold throughout.
+    pub outside: Vec<OutsideDomain>,
     /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right;
     /// none where the observer does not know its sensors.
     pub surprise: Option<f64>,
@@ -133,6 +136,15 @@ impl Summary {
         let all = self.samples + 1;
         let mut lines = Vec::new();
         let mut line = |name: &str, what: &str| lines.push(format!("{name}: {what}"));
+        for OutsideDomain { assumption, since, samples } in &self.outside {
+            let since = short(*since);
+            line(
+                "outside the domain",
+                &format!(
+                    "`{assumption}` does not hold from t = {since} s on, in {samples} of {all} samples: nothing is proved there"
+                ),
+            );
+        }
         match &self.excitation {
             Excitation::NotYet { weakest } => line("excitation", &format!("not yet, `{weakest}` is not determined")),
             Excitation::Converged { since } => line("excitation", &format!("enough from t = {} s on", short(*since))),

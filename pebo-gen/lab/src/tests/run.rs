@@ -271,3 +271,24 @@ fn rebasing_changes_no_estimate_of_a_relation_under_the_derivative() {
         }
     }
 }
+
+#[test]
+fn an_output_with_feedthrough_has_the_first_input_at_the_start() {
+    // By the value 0 it would be infinite there.
+    let text = "
+model: feed
+x: [a]
+y: [s]
+u: [v]
+assume: [v > 1]
+f_x: {a: -a}
+g_y: {s: a/v}
+simulation: {duration: 1, step: 0.01, initial: {a: 1}, control: {v: 25 + t}}
+";
+    let s = run(text, &Overrides::default()).column("s").unwrap();
+    assert!((s[0] - 0.04).abs() < 1e-15, "{}", s[0]);
+    // A law that has the output, whose value has the input: the law's own answer to that output.
+    let fed = run(&with(text, "v: 25 + t", "v: 20 + s"), &Overrides::default());
+    let (s, v) = (fed.column("s").unwrap()[0], fed.column("v").unwrap()[0]);
+    assert!((v - (20.0 + s)).abs() < 1e-15 && (s - 0.05).abs() < 1e-3, "{s} {v}");
+}
