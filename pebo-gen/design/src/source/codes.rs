@@ -360,7 +360,8 @@ codes! {
          a name: `Channel A (V)` is Channel_A_V."
     RecordingMalformed "recording-malformed" "a recording is not a table of numbers"
         "A recording is CSV text: a line with the names of the columns, then a row of numbers for each sample, parted by \
-         commas, semicolons or tabs. Lines that begin with # are comments. The message has line and column of the first \
-         cell that is not a number. A cell that is empty, NaN or infinite is no mistake: it is a fault of a sensor, which \
-         is counted."
+         commas, semicolons or tabs. Lines that begin with # are comments, and a row of units may stand below the names. A \
+         number may have a decimal comma where commas part nothing; a time may be a date, as 2026-11-27T10:00:00.25, and \
+         is then counted from the first row. The message has line and column of the first cell that is none of these. A \
+         cell that is empty, NaN or infinite is no mistake: it is a fault of a sensor, which is counted."
 }

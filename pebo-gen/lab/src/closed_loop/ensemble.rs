@@ -14,9 +14,10 @@ use pebo_design::source::Diagnostic;
 use super::failure::Failure;
 use super::layout::TIME;
 use super::scenario::Scenario;
+use crate::figure::Sheet;
+use crate::figure::curve::DrawnCurve;
 use crate::figure::label::Label;
-use crate::figure::panel::Panel;
-use crate::figure::{Band, Sheet};
+use crate::figure::panel::{Panel, PanelCurve};
 use crate::summary::{Estimate, Summary, short, table};
 use crate::timing::real;
 
@@ -311,7 +312,7 @@ impl Ensemble {
                 states.push(&spread.estimate.state);
             }
         }
-        let (mut panels, mut curves, mut bands): (Vec<Panel>, Vec<Vec<_>>, Vec<Vec<Band>>) = Default::default();
+        let (mut panels, mut curves): (Vec<Panel>, Vec<Vec<DrawnCurve>>) = Default::default();
         for state in states {
             let of_state =
                 || self.estimates.iter().zip(&self.courses).filter(|(spread, _)| spread.estimate.state == state);
@@ -323,16 +324,20 @@ impl Ensemble {
                 title: format!("Error of {state}"),
                 unit: of_state().find_map(|(spread, _)| spread.estimate.unit.clone()),
                 scale: Scale::Log,
-                curves: of_state().map(|(spread, _)| label(&spread.estimate.baseline)).collect(),
+                curves: of_state()
+                    .map(|(spread, _)| PanelCurve::settling(label(&spread.estimate.baseline), true))
+                    .collect(),
             });
-            curves.push(of_state().map(|(_, course)| course.iter().map(|(t, q)| (*t, q[1])).collect()).collect());
-            bands
-                .push(of_state().map(|(_, course)| course.iter().map(|(t, q)| (*t, [q[0], q[2]])).collect()).collect());
+            let drawn = |course: &ErrorCourse| {
+                let quantile = |place: usize| course.iter().map(|(t, q)| (*t, q[place])).collect();
+                DrawnCurve { line: quantile(1), band: Some([quantile(0), quantile(2)]) }
+            };
+            curves.push(of_state().map(|(_, course)| drawn(course)).collect());
         }
         let title = Label::text(&scenario.title).remark(&format!("median and 10 to 90 % of {} runs", self.runs));
         let duration = scenario.timing.at(scenario.timing.samples);
         let time = ([0.0, duration], Label::name("t"));
-        Sheet { title: (&scenario.title, title), time, panels: &panels, curves: &curves }.draw_with(&bands)
+        Sheet { title: (&scenario.title, title), time, panels: &panels, curves: &curves }.draw()
     }
 }
 

@@ -11,7 +11,7 @@ use pebo_design::plant::Plant;
 use pebo_design::program::Program;
 use pebo_design::source::{Diagnostic, Span};
 
-use crate::observe::design::program;
+use crate::observe::design::{Design, program};
 
 /// The position of time.
 pub(crate) const TIME: usize = 0;
@@ -32,6 +32,8 @@ pub(crate) struct Layout {
     pub(crate) measured_time: Option<usize>,
     /// The observer's estimates.
     pub(crate) hat: Range<usize>,
+    /// Their standard errors, where they are predicted.
+    pub(crate) standard_errors: Range<usize>,
     /// The baselines' estimates, one baseline after the other.
     pub(crate) baseline_estimates: Range<usize>,
     /// Signals, then the courses of true parameters and states.
@@ -41,8 +43,8 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// The table for this plant and simulation, with these states recovered by the observer.
-    pub(crate) fn new(plant: &Plant, simulation: &Simulation, recovered: &[Symbol]) -> Self {
+    /// The table for this plant and simulation, with the states that this observer recovers.
+    pub(crate) fn new(plant: &Plant, simulation: &Simulation, design: &Design) -> Self {
         let arena = &plant.arena;
         let mut symbols = vec![time(arena)];
         let mut add = |group: Vec<Symbol>| {
@@ -58,7 +60,10 @@ impl Layout {
             .flat_map(|(name, b)| b.state.iter().map(|entry| baseline_state(arena, name, &entry.name.value)))
             .collect());
         let u = add(plant.u.clone());
-        let hat = add(recovered.iter().map(|state| estimate(arena, &arena.name(*state))).collect());
+        let recovered = || design.recovered.iter().map(|state| arena.name(*state));
+        let hat = add(recovered().map(|state| estimate(arena, &state)).collect());
+        let predicted = recovered().filter(|_| design.predicts());
+        let standard_errors = add(predicted.map(|state| standard_error(arena, &state)).collect());
         let baseline_hats =
             add(baselines().flat_map(|b| baseline_estimates(plant, b)).map(|(_, estimate)| estimate).collect());
         let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
@@ -75,6 +80,7 @@ impl Layout {
             u,
             measured_time,
             hat,
+            standard_errors,
             baseline_estimates: baseline_hats,
             signals,
             last_samples,
@@ -115,6 +121,11 @@ pub(crate) fn last_sample(arena: &Arena, output: &str) -> Symbol {
 /// The observer's estimate of a state.
 pub(crate) fn estimate(arena: &Arena, state: &str) -> Symbol {
     arena.generated(&format!("hat({state})"))
+}
+
+/// The standard error of that estimate.
+pub(crate) fn standard_error(arena: &Arena, state: &str) -> Symbol {
+    arena.generated(&format!("std({state})"))
 }
 
 /// A state of a baseline.

@@ -1,6 +1,6 @@
 //! The closed loop of plant, sensors, control law, observer and baselines.
 
-mod baseline;
+pub(crate) mod baseline;
 mod control;
 pub(crate) mod ensemble;
 mod estimator;
@@ -12,7 +12,7 @@ pub(crate) mod ode;
 pub(crate) mod panels;
 pub(crate) mod run;
 pub(crate) mod scenario;
-mod scope;
+pub(crate) mod scope;
 mod sensor;
 pub(crate) mod sheet;
 pub(crate) mod signal;

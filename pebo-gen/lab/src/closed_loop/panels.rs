@@ -1,4 +1,4 @@
-//! The panels of a run's figure: those that the model file describes, or errors, outputs and inputs.
+//! The panels of a run's figure: those that the model file describes, or estimates, errors, outputs and inputs.
 //!
 //! A curve that shows estimates of the observer is drawn once more for each baseline that estimates
 //! the same states, with the baseline's name beside it.
@@ -11,13 +11,13 @@ use pebo_design::plant::lower;
 use pebo_design::source::Diagnostics;
 
 use super::baseline::ResolvedBaseline;
-use super::layout::{baseline_estimate, estimate};
+use super::layout::{baseline_estimate, estimate, standard_error};
 use super::scope::{Estimates, Names, Sight, View};
 use crate::figure::label::Label;
-use crate::figure::panel::Panel;
+use crate::figure::panel::{Panel, PanelCurve};
 use crate::figure::unit;
 
-/// The panels, and the values of their curves one after the other.
+/// The panels, and the values of their curves one after the other, each with the edges of its band.
 #[derive(Debug, Default)]
 pub(crate) struct Panels {
     pub(crate) panels: Vec<Panel>,
@@ -28,12 +28,12 @@ impl Panels {
     /// The panels of the model file, else the usual ones.
     pub(crate) fn resolve(
         names: &Names,
-        hats: &Estimates,
+        (hats, predicted): (&Estimates, bool),
         errors: &[Expr],
         baselines: &[ResolvedBaseline],
         problems: &mut Diagnostics,
     ) -> Self {
-        let mut pass = PanelResolver { names, hats, baselines, found: Self::default() };
+        let mut pass = PanelResolver { names, hats, predicted, baselines, found: Self::default() };
         if names.simulation.panels.is_empty() {
             pass.usual(errors);
         } else {
@@ -43,9 +43,18 @@ impl Panels {
     }
 }
 
+/// The value of a curve, and the edges of the band about it.
+#[derive(Clone, Copy, Debug)]
+struct CurveValue {
+    value: Expr,
+    edges: Option<[Expr; 2]>,
+}
+
 struct PanelResolver<'a> {
     names: &'a Names<'a>,
     hats: &'a Estimates,
+    /// True if the observer predicts the standard errors of its estimates.
+    predicted: bool,
     baselines: &'a [ResolvedBaseline],
     found: Panels,
 }
@@ -60,8 +69,11 @@ impl PanelResolver<'_> {
         let scope = self.names.scope(&View { sight: Sight::Everything, own: None, hats: self.hats.clone() });
         for panel in &self.names.simulation.panels {
             let curves = panel.curves.iter();
-            let curves: Vec<(Label, Expr)> = curves
-                .filter_map(|f| Some((Label::formula(f), meant(problems.keep(lower(arena, &scope, f))?))))
+            let curves = curves
+                .filter_map(|f| {
+                    let value = meant(problems.keep(lower(arena, &scope, f))?);
+                    Some((PanelCurve::plain(Label::formula(f)), CurveValue { value, edges: None }))
+                })
                 .collect();
             let known = |name: &str| self.unit(arena.symbol(name));
             let unit = match &panel.unit {
@@ -72,28 +84,45 @@ impl PanelResolver<'_> {
         }
     }
 
-    /// Errors on a logarithmic axis, which alone shows all units and sizes; outputs and inputs, each unit on an axis of
-    /// its own.
+    /// Each estimate beside the state, with the band of its standard error; errors, without noise on a logarithmic axis,
+    /// which alone shows how they die out; outputs and inputs, each unit on an axis of its own.
     fn usual(&mut self, errors: &[Expr]) {
         let plant = self.names.plant;
         let arena = &plant.arena;
-        let states = self.hats.iter().map(|(state, _)| arena.symbol(state));
-        let errors = self.hats.iter().zip(errors).map(|((state, _), error)| (Label::error(state), *error));
-        let errors = states.zip(errors).map(|(state, (label, error))| (state, label, error)).collect();
-        let named = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), arena.of_symbol(symbol));
-        let measured = |symbol: Symbol| (symbol, Label::name(&arena.name(symbol)), self.names.measured(symbol));
-        let outputs = plant.y.iter().map(|output| measured(output.symbol)).collect();
-        let inputs = plant.commanded().map(named).collect();
-        self.signals("Estimation errors", Scale::Log, errors);
+        let plain = |value: Expr| CurveValue { value, edges: None };
+        for (state, hat) in self.hats {
+            let symbol = arena.symbol(state);
+            let edges = self.predicted.then(|| {
+                let standard_error = arena.of_symbol(standard_error(arena, state));
+                [arena.sub(*hat, standard_error), arena.add(*hat, standard_error)]
+            });
+            let estimate = PanelCurve::settling(Label::estimate(state), self.predicted);
+            let curves = vec![
+                (symbol, estimate, CurveValue { value: *hat, edges }),
+                (symbol, PanelCurve::plain(Label::name(state)), plain(arena.of_symbol(symbol))),
+            ];
+            self.signals(&Panel::of_estimate(plant, symbol), Scale::Linear, curves);
+        }
+        let errors = self.hats.iter().zip(errors).map(|((state, _), error)| {
+            (arena.symbol(state), PanelCurve::settling(Label::error(state), false), plain(*error))
+        });
+        let signal =
+            |symbol: Symbol, value: Expr| (symbol, PanelCurve::plain(Label::name(&arena.name(symbol))), plain(value));
+        let outputs = plant.y.iter().map(|output| signal(output.symbol, self.names.measured(output.symbol))).collect();
+        let inputs = plant.commanded().map(|input| signal(input, arena.of_symbol(input))).collect();
+        let scale = if self.names.simulation.noise.is_empty() { Scale::Log } else { Scale::Linear };
+        for (title, errors) in Panel::of_errors(plant, scale, errors.collect(), |(symbol, ..)| *symbol) {
+            self.signals(&title, scale, errors);
+        }
         self.signals("Outputs", Scale::Linear, outputs);
         self.signals("Inputs", Scale::Linear, inputs);
     }
 
-    fn signals(&mut self, title: &str, scale: Scale, curves: Vec<(Symbol, Label, Expr)>) {
+    fn signals(&mut self, title: &str, scale: Scale, curves: Vec<(Symbol, PanelCurve, CurveValue)>) {
         for curves in Panel::groups(self.names.plant, scale, curves, |(symbol, ..)| *symbol) {
-            let (labels, values): (Vec<_>, Vec<Expr>) =
-                curves.into_iter().map(|(symbol, label, value)| ((symbol, label), value)).unzip();
-            let panel = Panel::of_signals(self.names.plant, title, scale, labels);
+            let (curves, values): (Vec<_>, Vec<CurveValue>) =
+                curves.into_iter().map(|(symbol, curve, value)| ((symbol, curve), value)).unzip();
+            let panel = Panel::of_signals(self.names.plant, title, scale, curves);
             self.add((title, panel.unit, scale), panel.curves.into_iter().zip(values).collect());
         }
     }
@@ -103,19 +132,21 @@ impl PanelResolver<'_> {
         self.names.plant.units.get(&symbol).map(String::as_str)
     }
 
-    fn add(&mut self, (title, unit, scale): (&str, Option<String>, Scale), curves: Vec<(Label, Expr)>) {
-        let mut labels = Vec::new();
-        for (label, value) in curves {
-            labels.push(label.clone());
+    fn add(&mut self, (title, unit, scale): (&str, Option<String>, Scale), curves: Vec<(PanelCurve, CurveValue)>) {
+        let mut shown = Vec::new();
+        for (curve, CurveValue { value, edges }) in curves {
+            shown.push(curve.clone());
             self.found.values.push(value);
+            self.found.values.extend(edges.into_iter().flatten());
             for baseline in self.baselines {
                 if let Some(other) = through(self.names, self.hats, value, baseline) {
-                    labels.push(label.clone().remark(&baseline.name));
+                    let label = curve.label.clone().remark(&baseline.name);
+                    shown.push(PanelCurve { label, has_band: false, ..curve });
                     self.found.values.push(other);
                 }
             }
         }
-        self.found.panels.push(Panel { title: title.to_owned(), unit, scale, curves: labels });
+        self.found.panels.push(Panel { title: title.to_owned(), unit, scale, curves: shown });
     }
 }
 

@@ -22,7 +22,7 @@ use super::scenario::{Scenario, ScoredEstimate};
 use super::sensor::{SensorState, instant};
 use super::signal::SignalCursor;
 use super::trace::Trace;
-use crate::figure::curve::Curve;
+use crate::figure::curve::{Curve, drawn};
 use crate::observe::certainty::CertaintyMonitor;
 use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
@@ -63,6 +63,7 @@ impl Scenario {
         let mut assumed = self.assumed.watch();
         let mut outside = vec![false; self.scored.len()];
         let samples = self.timing.samples;
+        let mut next_row = 0;
         let stride = (samples / REPORTS).max(1);
         for sample in 0..=samples {
             if sample > 0 {
@@ -78,10 +79,14 @@ impl Scenario {
             for (place, (outside, scored)) in outside.iter_mut().zip(&self.scored).enumerate() {
                 *outside |= scored.estimate.baseline.is_none() && self.design.is_outside(place, table[scored.truth]);
             }
-            show(sample, Snapshot { table, errors });
-            if sample % stride == 0 || sample == samples {
+            let is_row = sample == self.timing.sample_of_row(next_row);
+            next_row += u64::from(is_row);
+            let is_report = sample % stride == 0 || sample == samples;
+            let predicted = if is_row || is_report { machine.predict() } else { None };
+            let table = &machine.table;
+            show(sample, Snapshot { table, errors, is_row });
+            if is_report {
                 watch.look(table[TIME], &machine.driver.observer.component_information());
-                let predicted = machine.driver.standard_errors();
                 certain.look(table[TIME], predicted.as_deref());
                 expected.add(table[TIME], predicted);
             }
@@ -125,6 +130,8 @@ pub(crate) struct Snapshot<'a> {
     pub(crate) table: &'a [f64],
     /// The errors of the estimates.
     pub(crate) errors: &'a [f64],
+    /// True if it is a row of the table.
+    pub(crate) is_row: bool,
 }
 
 /// A program with room for its values.
@@ -209,7 +216,7 @@ impl<'a> LoopState<'a> {
         machine.growth = Growth::new(&machine.table[layout.state.clone()]);
         let (x, y) = (&machine.table[layout.x.clone()], &machine.measured.values);
         let followers = scenario.followers.iter();
-        machine.followers = followers.map(|(_, sampled)| sampled.follower(x, y, scenario.timing.step)).collect();
+        machine.followers = followers.map(|(_, sampled)| sampled.follower(Some(x), y)).collect();
         machine.estimate(0, true)?;
         Ok(machine)
     }
@@ -241,7 +248,7 @@ impl<'a> LoopState<'a> {
             self.scenario.sensors.leave_out(sample, &mut y);
             let y = Some(y.as_slice()).filter(|_| arrives);
             let u = &self.table[self.scenario.layout.u.clone()];
-            self.followers.iter_mut().for_each(|follower| follower.sample(y, u));
+            self.followers.iter_mut().for_each(|follower| follower.sample(y, u, self.scenario.timing.step));
         }
         self.estimate(sample, arrives)
     }
@@ -324,6 +331,15 @@ impl<'a> LoopState<'a> {
         }
     }
 
+    /// Writes the standard errors that the observer predicts into the table.
+    fn predict(&mut self) -> Option<Vec<f64>> {
+        let predicted = self.driver.standard_errors();
+        let place = self.scenario.layout.standard_errors.clone();
+        let known = predicted.iter().flatten().copied().chain(std::iter::repeat(f64::NAN));
+        self.table[place].iter_mut().zip(known).for_each(|(cell, value)| *cell = value);
+        predicted
+    }
+
     /// Checks that the values at these positions are finite.
     fn admit(&self, range: std::ops::Range<usize>) -> Result<(), Failure> {
         match range.into_iter().find(|position| !self.table[*position].is_finite()) {
@@ -340,7 +356,6 @@ impl<'a> LoopState<'a> {
 struct Record<'a> {
     scenario: &'a Scenario,
     rows: Vec<f64>,
-    next_row: u64,
     measured: Formulas,
     values: Formulas,
     curves: Vec<Curve>,
@@ -351,22 +366,20 @@ impl<'a> Record<'a> {
         Self {
             scenario,
             rows: Vec::new(),
-            next_row: 0,
             measured: Formulas::new(&scenario.measured),
             values: Formulas::new(&scenario.curves),
             curves: vec![Curve::default(); scenario.curves.outputs.len()],
         }
     }
 
-    fn take(&mut self, sample: u64, Snapshot { table, errors }: Snapshot<'_>) {
+    fn take(&mut self, sample: u64, Snapshot { table, errors, is_row }: Snapshot<'_>) {
         let timing = &self.scenario.timing;
         for (curve, value) in self.curves.iter_mut().zip(self.values.of(table)) {
             curve.add(sample, timing.samples, (table[TIME], *value));
         }
-        if sample != timing.sample_of_row(self.next_row) {
+        if !is_row {
             return;
         }
-        self.next_row += 1;
         let layout = &self.scenario.layout;
         self.rows.push(table[TIME]);
         self.rows.extend(&table[layout.x.clone()]);
@@ -377,12 +390,11 @@ impl<'a> Record<'a> {
             self.rows.extend([*hat, *error]);
         }
         self.rows.extend(&table[layout.baseline_estimates.clone()]);
+        self.rows.extend(&table[layout.standard_errors.clone()]);
     }
 
     fn finish(self, summary: Summary) -> Trace {
-        let mut curves = self.curves.into_iter().map(Curve::finish);
-        let panels = self.scenario.panels.iter();
-        let curves = panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect();
+        let curves = drawn(&self.scenario.panels, self.curves.into_iter().map(Curve::finish));
         Trace::new((self.scenario.columns.clone(), self.rows), curves, summary)
     }
 }

@@ -239,9 +239,9 @@ impl Resolution<'_> {
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
         let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
-        let panels = Panels::resolve(&names, &hats, &errors, &baselines, problems);
+        let panels = Panels::resolve(&names, (&hats, design.predicts()), &errors, &baselines, problems);
 
-        let layout = Layout::new(plant, simulation, &design.recovered);
+        let layout = Layout::new(plant, simulation, &design);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
         let state = &layout.symbols[layout.state.clone()];
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
@@ -252,7 +252,7 @@ impl Resolution<'_> {
                     .help(format!("the simulator has room for {}", ode::LARGEST)),
             );
         }
-        let columns = columns(plant, &design.recovered, &baselines);
+        let columns = columns(plant, &design, &baselines);
         problems.keep(admit_table(&timing, columns.len()));
         let followers = followers(plant, &layout, &mut baselines);
         let estimates: Vec<Expr> =
@@ -262,8 +262,10 @@ impl Resolution<'_> {
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
+        let compared: Vec<(String, Estimates)> =
+            baselines.iter().map(|baseline| (baseline.name.clone(), baseline.estimates.clone())).collect();
         let (scored, errors) =
-            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &baselines);
+            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &compared);
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         let control = compile(&control)?;
         if let Some(share) = overrides.initial_error {
@@ -445,23 +447,21 @@ fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
     hats.iter().map(error).collect()
 }
 
-/// Every estimate with its error: those of the observer, then those of each baseline.
+/// Every estimate of a state of the table with its error: those of the observer, then those of each baseline.
 pub(crate) fn scored(
     (plant, table): (&Plant, &[Symbol]),
     periods: &Periods,
     hats: &Estimates,
-    baselines: &[ResolvedBaseline],
+    baselines: &[(String, Estimates)],
 ) -> (Vec<ScoredEstimate>, Vec<Expr>) {
     let arena = &plant.arena;
-    let of_baselines = baselines.iter().flat_map(|baseline| {
-        let estimates = baseline
-            .estimates
-            .iter()
-            .map(|(state, _)| (state.clone(), arena.of_symbol(baseline_estimate(arena, &baseline.name, state))));
-        estimates.map(|estimate| (Some(baseline.name.clone()), estimate))
+    let of_baselines = baselines.iter().flat_map(|(baseline, estimates)| {
+        let written = |state: &String| arena.of_symbol(baseline_estimate(arena, baseline, state));
+        estimates.iter().map(move |(state, _)| (Some(baseline.clone()), (state.clone(), written(state))))
     });
     let own = hats.iter().cloned().map(|estimate| (None, estimate));
-    let (names, estimates): (Vec<_>, Estimates) = own.chain(of_baselines).unzip();
+    let is_known = |(_, (state, _)): &(Option<String>, (String, Expr))| table.contains(&arena.symbol(state));
+    let (names, estimates): (Vec<_>, Estimates) = own.chain(of_baselines).filter(is_known).unzip();
     let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
         let symbol = arena.symbol(state);
         let number = |periods: &BTreeMap<Symbol, Expr>| {
@@ -479,18 +479,21 @@ pub(crate) fn scored(
     (scored, errors(plant, periods, &estimates))
 }
 
-fn columns(plant: &Plant, recovered: &[Symbol], baselines: &[ResolvedBaseline]) -> Vec<String> {
+fn columns(plant: &Plant, design: &Design, baselines: &[ResolvedBaseline]) -> Vec<String> {
     let arena = &plant.arena;
     let states = plant.x.iter().map(|state| state.symbol);
     let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
     let mut columns = vec!["t".to_owned()];
     columns.extend(signals.map(|symbol| arena.name(symbol)));
-    for state in recovered.iter().map(|state| arena.name(*state)) {
+    let recovered = || design.recovered.iter().map(|state| arena.name(*state));
+    for state in recovered() {
         columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
     }
     for baseline in baselines {
         columns.extend(baseline.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", baseline.name)));
     }
+    let predicted = recovered().filter(|_| design.predicts());
+    columns.extend(predicted.map(|state| format!("{state}{}", Trace::STANDARD_ERROR)));
     columns
 }
 

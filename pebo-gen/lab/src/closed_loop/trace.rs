@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::figure::curve::DrawnCurve;
 use crate::summary::Summary;
 
 /// The course of a run. Serialises to `columns`, the names, and `values`, row by row.
@@ -10,9 +11,9 @@ pub struct Trace {
     columns: Vec<String>,
     /// Row by row.
     values: Vec<f64>,
-    /// The points of each panel's curves.
+    /// Each panel's curves.
     #[serde(skip)]
-    pub(crate) curves: Vec<Vec<Vec<(f64, f64)>>>,
+    pub(crate) curves: Vec<Vec<DrawnCurve>>,
     /// The summary of the run.
     #[serde(skip)]
     pub(crate) summary: Summary,
@@ -22,10 +23,13 @@ impl Trace {
     /// The suffix of the names of error columns.
     pub const ERROR: &str = "_error";
 
-    /// The table row by row, the points of each panel's curves, and the summary of the run.
+    /// The suffix of the names of standard errors.
+    pub const STANDARD_ERROR: &str = "_std";
+
+    /// The table row by row, each panel's curves, and the summary of the run.
     pub(crate) fn new(
         (columns, values): (Vec<String>, Vec<f64>),
-        curves: Vec<Vec<Vec<(f64, f64)>>>,
+        curves: Vec<Vec<DrawnCurve>>,
         summary: Summary,
     ) -> Self {
         Self { columns, values, curves, summary }
@@ -37,7 +41,7 @@ impl Trace {
     }
 
     /// The names of the columns: `t`, states of x and y, inputs, `<x>_hat` and `<x>_error` for each recovered state,
-    /// `<baseline>.<x>_hat`.
+    /// `<baseline>.<x>_hat`; `<x>_std`, the standard error that the observer predicts, where it does.
     pub fn columns(&self) -> &[String] {
         &self.columns
     }
@@ -65,7 +69,8 @@ impl Trace {
         for row in self.rows() {
             for (position, value) in row.iter().enumerate() {
                 let separator = if position + 1 == row.len() { '\n' } else { ',' };
-                let written = write_number(&mut text, *value);
+                // No standard error is predicted before the first sample.
+                let written = if value.is_finite() { write_number(&mut text, *value) } else { Ok(()) };
                 debug_assert!(written.is_ok(), "a string takes everything");
                 text.push(separator);
             }

@@ -4,8 +4,29 @@
 //! and the last value with their instants. A line through these looks as one through all samples would
 //! (Jugel, Jerzak, Hackenbroich, Markl, M4, 2014).
 
+use super::panel::Panel;
+
 /// Spans of time: more than the figure has columns of dots in print.
 const SPANS: u64 = 800;
+
+/// A curve as it is drawn: instants with values.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct DrawnCurve {
+    pub(crate) line: Vec<(f64, f64)>,
+    /// The lower and the upper edge of the band about it.
+    pub(crate) band: Option<[Vec<(f64, f64)>; 2]>,
+}
+
+/// The curves of each panel, from their points one after the other: the line, then the edges of its band if it has one.
+pub(crate) fn drawn(panels: &[Panel], points: impl IntoIterator<Item = Vec<(f64, f64)>>) -> Vec<Vec<DrawnCurve>> {
+    let mut points = points.into_iter();
+    let mut next = || points.next().unwrap_or_default();
+    let mut curve = |has_band: bool| {
+        let line = next();
+        DrawnCurve { line, band: has_band.then(|| [next(), next()]) }
+    };
+    panels.iter().map(|panel| panel.curves.iter().map(|of| curve(of.has_band)).collect()).collect()
+}
 
 /// The points of a curve.
 #[derive(Clone, Debug, Default)]

@@ -16,12 +16,15 @@ mod plot;
 mod svg;
 
 use axis::Axis;
+use curve::DrawnCurve;
 use label::Label;
-pub(crate) use page::Band;
 use page::{BOTTOM, HEADING, LEFT, MARGIN, PLOT_WIDTH, TEXT, TITLE, TOP};
 use panel::Panel;
 use plot::Plot;
 use svg::{Anchor, Drawing, width};
+
+/// The share of the time at the start in which a curve that settles may leave a linear axis.
+const SETTLING: f64 = 0.05;
 
 /// Panels with their curves over a common time.
 pub(super) struct Sheet<'a> {
@@ -30,41 +33,40 @@ pub(super) struct Sheet<'a> {
     /// The range of time in seconds, and its label.
     pub(super) time: ([f64; 2], Label),
     pub(super) panels: &'a [Panel],
-    /// The points of each panel's curves.
-    pub(super) curves: &'a [Vec<Vec<(f64, f64)>>],
+    /// Each panel's curves.
+    pub(super) curves: &'a [Vec<DrawnCurve>],
 }
 
 impl Sheet<'_> {
     /// The drawing as SVG.
     pub(super) fn draw(&self) -> String {
-        self.draw_with(&[])
-    }
-
-    /// The drawing with the bands of some panels' curves, panel by panel.
-    pub(super) fn draw_with(&self, bands: &[Vec<Band>]) -> String {
         let ([from, to], name) = &self.time;
+        // One row alone has no duration.
+        let to = &if to > from { *to } else { from + 1.0 };
         let (unit, factor) = time_unit(to - from);
         let time = Axis::whole(from * factor, to * factor);
 
-        let labels = self.panels.iter().flat_map(|panel| &panel.curves);
+        let settled = from + SETTLING * (to - from);
+        let plots = self.panels.iter().zip(self.curves).map(|(panel, curves)| Plot::of(panel, curves, settled));
+        let plots: Vec<Plot> = plots.collect();
+        let labels = self.panels.iter().flat_map(|panel| &panel.curves).map(|curve| &curve.label);
         let legend = labels.map(|label| width(label, TEXT)).fold(0.0, f64::max) + plot::SAMPLE + 2.0 * MARGIN;
+        let left = plots.iter().map(Plot::labels_width).fold(LEFT, f64::max);
         let (title, heading) = &self.title;
-        let headings = self.panels.iter().map(|panel| LEFT + width(&plot::longest_heading(panel), TEXT) + MARGIN);
-        let page = (LEFT + PLOT_WIDTH + legend).max(2.0 * MARGIN + width(heading, TITLE));
+        let headings = self.panels.iter().map(|panel| left + width(&plot::longest_heading(panel), TEXT) + MARGIN);
+        let page = (left + PLOT_WIDTH + legend).max(2.0 * MARGIN + width(heading, TITLE));
         let page = headings.fold(page, f64::max);
 
         let mut drawing = Drawing::new();
-        let middle = LEFT + PLOT_WIDTH / 2.0;
+        let middle = left + PLOT_WIDTH / 2.0;
         // The title stands over the middle of the plots, unless it then left the page.
         let half = width(heading, TITLE) / 2.0 + MARGIN;
         drawing.label((middle.min(page - half).max(half), TOP - 6.0), Anchor::Middle, TITLE, heading);
         let mut top = TOP;
-        for (number, (panel, curves)) in self.panels.iter().zip(self.curves).enumerate() {
-            let bands = bands.get(number).map_or(&[][..], Vec::as_slice);
-            let plot = Plot { panel, curves, bands, time: &time, factor, left: LEFT, top: top + HEADING };
-            top = plot.draw(&mut drawing);
+        for plot in &plots {
+            top = plot.draw(&mut drawing, (&time, factor), (left, top + HEADING));
         }
-        plot::time_axis(&mut drawing, &time, top, name, unit);
+        plot::time_axis(&mut drawing, &time, (left, top), name, unit);
         drawing.finish((page, top + BOTTOM), title)
     }
 }

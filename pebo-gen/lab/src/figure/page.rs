@@ -16,6 +16,3 @@ pub(super) const MARGIN: f64 = 10.0;
 pub(super) const TITLE: f64 = 13.0;
 /// Size of all other letters.
 pub(super) const TEXT: f64 = 12.0;
-
-/// A band about a curve: instants, each with a lower and an upper end.
-pub(crate) type Band = Vec<(f64, [f64; 2])>;

@@ -1,11 +1,12 @@
 //! One panel: frame, grid, curves, marks, legend.
 
 use super::axis::Axis;
+use super::curve::DrawnCurve;
 use super::label::Label;
-use super::line::thinned;
-use super::page::{Band, LEFT, MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
-use super::panel::Panel;
-use super::svg::{Anchor, Drawing};
+use super::line::{thinned, within};
+use super::page::{MARGIN, PLOT_HEIGHT, PLOT_WIDTH, TEXT};
+use super::panel::{Panel, PanelCurve};
+use super::svg::{Anchor, Drawing, width};
 use pebo_design::model::Scale;
 
 /// Colours that people with any kind of colour vision tell apart (Okabe and Ito 2008), each with dashes
@@ -22,82 +23,100 @@ const STYLES: &[(&str, &str)] = &[
 /// Length of a legend's line, with the space behind it.
 pub(super) const SAMPLE: f64 = 28.0;
 
+/// Between the marks and the frame.
+const MARK_SPACE: f64 = 6.0;
+
 /// From line to line of a legend.
 const SPACING: f64 = 17.0;
 
-/// A panel at its position.
+/// A panel with its curves.
 #[derive(Debug)]
 pub(super) struct Plot<'a> {
-    pub(super) panel: &'a Panel,
-    pub(super) curves: &'a [Vec<(f64, f64)>],
-    /// About each of the curves, if there are any.
-    pub(super) bands: &'a [Band],
-    pub(super) time: &'a Axis,
-    /// Units of the time axis in a second.
-    pub(super) factor: f64,
-    pub(super) left: f64,
-    /// The upper edge of the frame; the heading is above.
-    pub(super) top: f64,
+    panel: &'a Panel,
+    curves: &'a [DrawnCurve],
+    axis: Axis,
 }
 
-impl Plot<'_> {
-    /// Draws the panel; returns its lower edge.
-    pub(super) fn draw(&self, drawing: &mut Drawing) -> f64 {
+impl<'a> Plot<'a> {
+    /// The panel with these curves; before `settled`, in seconds, one that settles may leave a linear axis.
+    pub(super) fn of(panel: &'a Panel, curves: &'a [DrawnCurve], settled: f64) -> Self {
+        Self { panel, curves, axis: axis(panel, curves, settled) }
+    }
+
+    /// The width that the marks beside the frame need.
+    pub(super) fn labels_width(&self) -> f64 {
+        let widest = self.axis.marks.iter().map(|mark| width(&mark.label, TEXT)).fold(0.0, f64::max);
+        widest + MARK_SPACE + MARGIN
+    }
+
+    /// Draws the panel over a time axis, with so many of its units in a second; `top` is the upper edge of the frame,
+    /// with the heading above. Returns the lower edge.
+    pub(super) fn draw(&self, drawing: &mut Drawing, (time, factor): (&Axis, f64), (left, top): (f64, f64)) -> f64 {
+        let axis = &self.axis;
         let rows = self.panel.curves.iter().fold(0.0, |rows, _| rows + 1.0);
         let height = PLOT_HEIGHT.max(SPACING * rows);
-        let ends = || self.bands.iter().flatten().flat_map(|(_, ends)| *ends);
-        let values = || self.curves.iter().flatten().map(|point| point.1).chain(ends());
-        let axis = match self.panel.scale {
-            Scale::Linear => Axis::linear(values()),
-            Scale::Log => Axis::logarithmic(values()),
-        };
-        let bottom = self.top + height;
-        drawing.label((self.left, self.top - 7.0), Anchor::Start, TEXT, &heading(self.panel, axis.exponent));
+        let bottom = top + height;
+        drawing.label((left, top - 7.0), Anchor::Start, TEXT, &heading(self.panel, axis.exponent));
         for mark in &axis.marks {
             let y = bottom - mark.place * height;
-            drawing.grid_line((self.left, y), (self.left + PLOT_WIDTH, y));
-            drawing.label((self.left - 6.0, y + 4.0), Anchor::End, TEXT, &mark.label);
+            drawing.grid_line((left, y), (left + PLOT_WIDTH, y));
+            drawing.label((left - MARK_SPACE, y + 4.0), Anchor::End, TEXT, &mark.label);
         }
-        for mark in &self.time.marks {
-            let x = self.left + mark.place * PLOT_WIDTH;
-            drawing.grid_line((x, self.top), (x, bottom));
+        for mark in &time.marks {
+            let x = left + mark.place * PLOT_WIDTH;
+            drawing.grid_line((x, top), (x, bottom));
         }
-        for (number, band) in self.bands.iter().enumerate() {
-            // Values beyond the axis end at its edge.
-            let place = |t: f64, value: f64| {
-                let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
-                (x, bottom - axis.place(value).clamp(0.0, 1.0) * height)
+        let place = |(t, value): &(f64, f64)| {
+            let x = left + time.place(t * factor) * PLOT_WIDTH;
+            (x, bottom - axis.place(*value) * height)
+        };
+        for (number, curve) in self.curves.iter().enumerate() {
+            let Some(edges) = &curve.band else { continue };
+            let edge = |points: &Vec<(f64, f64)>| {
+                let known = points.iter().filter(|point| !point.1.is_nan());
+                // Values beyond the axis end at its edge.
+                let placed = known.map(place).map(|(x, y)| (x, y.clamp(top, bottom)));
+                thinned(&placed.collect::<Vec<_>>())
             };
-            let known = || band.iter().filter(|(_, ends)| !ends.iter().any(|end| end.is_nan()));
-            let lower: Vec<_> = known().map(|(t, [lower, _])| place(*t, *lower)).collect();
-            let upper: Vec<_> = known().map(|(t, [_, upper])| place(*t, *upper)).collect();
-            let edge: Vec<_> = thinned(&lower).into_iter().chain(thinned(&upper).into_iter().rev()).collect();
-            drawing.area(&edge, style(number).0);
+            let [lower, upper] = edges.each_ref().map(edge);
+            drawing.area(&lower.into_iter().chain(upper.into_iter().rev()).collect::<Vec<_>>(), style(number).0);
         }
         for (number, curve) in self.curves.iter().enumerate() {
-            let place = |(t, value): &(f64, f64)| {
-                let x = self.left + self.time.place(t * self.factor) * PLOT_WIDTH;
-                (x, bottom - axis.place(*value) * height)
-            };
             // Values that are not finite, or too small for a logarithmic axis, are gaps in the line.
-            let parts = curve.split(|point| !point.1.is_finite() || axis.place(point.1) < 0.0);
-            let parts: Vec<_> = parts.map(|part| thinned(&part.iter().map(place).collect::<Vec<_>>())).collect();
+            let is_gap = |value: f64| !value.is_finite() || (self.panel.scale == Scale::Log && axis.place(value) < 0.0);
+            let parts = curve.line.split(|point| is_gap(point.1));
+            let parts = parts.flat_map(|part| within(&part.iter().map(place).collect::<Vec<_>>(), [top, bottom]));
+            let parts: Vec<_> = parts.map(|part| thinned(&part)).collect();
             drawing.line(&parts, style(number));
         }
-        drawing.frame((self.left, self.top), (PLOT_WIDTH, height));
-        self.legend(drawing);
+        drawing.frame((left, top), (PLOT_WIDTH, height));
+        self.legend(drawing, (left, top));
         bottom
     }
 
-    fn legend(&self, drawing: &mut Drawing) {
-        let x = self.left + PLOT_WIDTH + MARGIN;
-        let mut y = self.top + 9.0;
-        for (number, label) in self.panel.curves.iter().enumerate() {
+    fn legend(&self, drawing: &mut Drawing, (left, top): (f64, f64)) {
+        let x = left + PLOT_WIDTH + MARGIN;
+        let mut y = top + 9.0;
+        for (number, PanelCurve { label, .. }) in self.panel.curves.iter().enumerate() {
             drawing.line(&[vec![(x, y), (x + SAMPLE - 6.0, y)]], style(number));
             drawing.label((x + SAMPLE, y + 4.0), Anchor::Start, TEXT, label);
             y += SPACING;
         }
     }
+}
+
+/// The axis of values. A linear one leaves out where a curve comes from, and how wide the band was there.
+fn axis(panel: &Panel, curves: &[DrawnCurve], settled: f64) -> Axis {
+    let lines = || curves.iter().map(|curve| &curve.line);
+    if panel.scale == Scale::Log {
+        let edges = curves.iter().filter_map(|curve| curve.band.as_ref()).flatten();
+        return Axis::logarithmic(lines().chain(edges).flatten().map(|point| point.1));
+    }
+    let shown = lines().zip(&panel.curves).flat_map(|(line, curve)| {
+        let first = if curve.settles { line.partition_point(|point| point.0 < settled) } else { 0 };
+        &line[first..]
+    });
+    Axis::linear(shown.map(|point| point.1))
 }
 
 /// The title of a panel with unit and power of ten.
@@ -120,13 +139,13 @@ pub(super) fn longest_heading(panel: &Panel) -> Label {
     heading(panel, -300)
 }
 
-/// The marks and the name of the time axis under the last panel, whose lower edge is `y`.
-pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, y: f64, name: &Label, unit: &str) {
+/// The marks and the name of the time axis under the last panel, whose lower left corner this is.
+pub(super) fn time_axis(drawing: &mut Drawing, time: &Axis, (left, y): (f64, f64), name: &Label, unit: &str) {
     for mark in &time.marks {
-        drawing.label((LEFT + mark.place * PLOT_WIDTH, y + 15.0), Anchor::Middle, TEXT, &mark.label);
+        drawing.label((left + mark.place * PLOT_WIDTH, y + 15.0), Anchor::Middle, TEXT, &mark.label);
     }
     let name = measured(name.clone(), time.exponent, Some(unit));
-    drawing.label((LEFT + PLOT_WIDTH / 2.0, y + 31.0), Anchor::Middle, TEXT, &name);
+    drawing.label((left + PLOT_WIDTH / 2.0, y + 31.0), Anchor::Middle, TEXT, &name);
 }
 
 fn style(number: usize) -> (&'static str, &'static str) {

@@ -13,6 +13,7 @@ use super::setup::Settings;
 use super::sizes::LARGEST;
 use crate::score::SETTLED;
 use crate::score::faults::SignalNames;
+use crate::settings::Prediction;
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -162,6 +163,11 @@ impl Design {
         let regression = self.equations.max(self.unknowns);
         let plant = self.outputs.max(self.inputs).max(self.coordinates);
         plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
+    }
+
+    /// True if it predicts the standard errors of its estimates.
+    pub(crate) fn predicts(&self) -> bool {
+        matches!(self.settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_)))
     }
 
     /// The number of equations of rates.

@@ -419,7 +419,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             restarts: 0,
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.equations),
-            is_certain: matches!(settings.prediction, Some(Prediction::Covariance | Prediction::Noise(_))),
+            is_certain: design.predicts(),
             uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
         })
     }

@@ -15,8 +15,10 @@ pub(super) enum RowFault {
     NotFinite(usize),
     /// A row has no instant.
     Timeless,
-    /// A row is not later than the one before.
-    Backwards,
+    /// The time of a row does not go on from that of the row before, and those after it do.
+    Misplaced,
+    /// The clock begins again or jumps: a piece of its own begins.
+    Piece,
     /// More time than a row and a half has passed.
     Gap,
     /// The last row breaks off with the file.
@@ -56,7 +58,8 @@ impl RowFaults {
             RowFault::Empty(column) => format!("empty cells of `{}`", columns[column]),
             RowFault::NotFinite(column) => format!("cells of `{}` that are NaN or infinite", columns[column]),
             RowFault::Timeless => "rows skipped that have no time".to_owned(),
-            RowFault::Backwards => "rows skipped whose time is not later than that of the row before".to_owned(),
+            RowFault::Misplaced => "rows skipped whose time is not between those of their neighbours".to_owned(),
+            RowFault::Piece => "new pieces, where the clock begins again or jumps and the observer with it".to_owned(),
             RowFault::Gap => "gaps, where the time steps by more than one and a half periods".to_owned(),
             RowFault::Cut => "last row dropped, as it breaks off with the file".to_owned(),
             RowFault::Input(input) => format!("rows without a value of `{}`: the value before was held", inputs[input]),

@@ -1,7 +1,9 @@
 //! Recorded data as CSV, row by row.
 //!
 //! In: bytes. Out: the names of the columns, then the numbers of the wanted columns, one row at a time; an empty cell
-//! or one that is not finite is a fact, other text is a [`Malformed`]. No more than a row is held.
+//! or one that is not finite is a fact, other text is a [`Malformed`]. A number may have a decimal comma where commas
+//! do not separate columns; a date or a time of day is the seconds since the first one of its column; a row of units below
+//! the header is skipped. No more than a row is held.
 
 use std::fmt;
 use std::io::{BufRead as _, BufReader, Read};
@@ -9,6 +11,8 @@ use std::io::{BufRead as _, BufReader, Read};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use pebo_design::source::quoted;
+
+use super::moment::moment;
 
 /// The delimiters of columns: the most frequent one in the header is taken.
 const DELIMITERS: [u8; 3] = [b',', b';', b'\t'];
@@ -28,6 +32,46 @@ pub struct Log<'a> {
     columns: Vec<String>,
     lines: Lines<'a>,
     row: Row,
+    values: Values,
+    /// True once a line below the header was read.
+    has_begun: bool,
+}
+
+/// The meaning of cells.
+struct Values {
+    /// True if a comma may stand before decimals.
+    has_decimal_comma: bool,
+    /// The first instant of each column of dates or times.
+    first: Vec<Option<i128>>,
+}
+
+impl Values {
+    /// The number of a cell; none for other text.
+    fn of(&mut self, column: usize, cell: &[u8]) -> Option<f64> {
+        let text = std::str::from_utf8(cell).ok()?;
+        if let Ok(number) = text.parse() {
+            return Some(number);
+        }
+        if self.has_decimal_comma
+            && !text.contains('.')
+            && let Ok(number) = text.replacen(',', ".", 1).parse()
+        {
+            return Some(number);
+        }
+        let instant = moment(text)?;
+        // A difference within centuries, in nanoseconds, is rounded once.
+        Some(nanoseconds(instant - *self.first.get_mut(column)?.get_or_insert(instant)) / 1e9)
+    }
+
+    /// True if the text is neither a number nor a time.
+    fn is_word(&self, text: &[u8]) -> bool {
+        Self { first: vec![None], ..*self }.of(0, text).is_none()
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a difference of nanoseconds is rounded to a double")]
+fn nanoseconds(count: i128) -> f64 {
+    count as f64
 }
 
 /// Lines that are neither comments nor blank.
@@ -171,13 +215,15 @@ impl<'a> Log<'a> {
             return Err(Unreadable::Nameless);
         }
         let header = lines.line.trim_ascii();
-        let mut row = Row::new(delimiter(header));
+        let delimiter = delimiter(header);
+        let mut row = Row::new(delimiter);
         let is_closed = row.split(header);
         if !is_closed || row.cells().all(|name| number(name).is_some()) {
             return Err(Unreadable::Nameless);
         }
-        let columns = row.cells().enumerate().map(|(place, name)| spelled(place, name)).collect();
-        Ok(Self { name: name.into(), columns, lines, row })
+        let columns: Vec<String> = row.cells().enumerate().map(|(place, name)| spelled(place, name)).collect();
+        let values = Values { has_decimal_comma: delimiter != b',', first: vec![None; columns.len()] };
+        Ok(Self { name: name.into(), columns, lines, row, values, has_begun: false })
     }
 
     /// Its name in messages.
@@ -205,6 +251,12 @@ impl<'a> Log<'a> {
         if !self.lines.advance()? {
             return Ok(Next::End);
         }
+        if !self.has_begun {
+            self.has_begun = true;
+            if self.is_row_of_units() && !self.lines.advance()? {
+                return Ok(Next::End);
+            }
+        }
         let line = self.lines.number;
         match self.take(line, wanted, numbers, blank) {
             Ok(()) => Ok(Next::Row(line)),
@@ -212,6 +264,14 @@ impl<'a> Log<'a> {
             Err(_) if !self.lines.is_whole() => Ok(Next::Cut(line)),
             Err(malformed) => Err(Unreadable::Malformed(malformed)),
         }
+    }
+
+    /// True if the line has words and no value, but for the unit 1.
+    fn is_row_of_units(&mut self) -> bool {
+        let Self { row, values, lines, .. } = self;
+        let is_closed = row.split(&lines.line);
+        let mut others = row.cells().filter(|cell| !cell.is_empty() && *cell != b"1").peekable();
+        is_closed && others.peek().is_some() && others.all(|cell| values.is_word(cell))
     }
 
     fn take(
@@ -235,7 +295,7 @@ impl<'a> Log<'a> {
         }
         for (value, &column) in numbers.iter_mut().zip(wanted) {
             let cell = self.row.cell(column);
-            *value = match number(cell) {
+            *value = match self.values.of(column, cell) {
                 Some(value) if value.is_finite() => value,
                 Some(_) => {
                     blank(column, Blank::NotFinite, line);
@@ -257,7 +317,8 @@ impl<'a> Log<'a> {
         let help = if number(text.replace(',', ".").as_bytes()).is_some() {
             "write decimals with a point"
         } else {
-            "write a number as `-1.5e-3`, or leave the cell empty; lines that begin with # are comments"
+            "write a number as `-1.5e-3`, a time as `2026-11-25T10:00:00.25`, or leave the cell empty; lines that begin \
+             with # are comments"
         };
         Malformed { line, column: Some(column + 1), what, help }
     }

@@ -1,9 +1,10 @@
 //! The panels of a replay's figure: a panel for each estimate, beside the state where that was measured; errors;
 //! residuals where no state was; outputs; inputs. On a linear axis all signals have one unit.
 
-use crate::figure::curve::GrowingCurve;
+use crate::closed_loop::scenario::ScoredEstimate;
+use crate::figure::curve::{DrawnCurve, GrowingCurve, drawn};
 use crate::figure::label::Label;
-use crate::figure::panel::Panel;
+use crate::figure::panel::{Panel, PanelCurve};
 use pebo_cas::Symbol;
 use pebo_design::model::Scale;
 use pebo_design::plant::Plant;
@@ -20,6 +21,8 @@ enum CurveSource {
     Error(usize),
     /// The residual with this index.
     Residual(usize),
+    /// The edge of the band about an estimate: its position, that of its standard error, and the side.
+    Edge(usize, usize, f64),
 }
 
 /// The panels, and the sources of their curves.
@@ -30,35 +33,49 @@ pub(super) struct Panels {
 }
 
 impl Panels {
-    /// `errors` are the recovered states that were measured.
-    pub(super) fn resolve(plant: &Plant, layout: &Layout, errors: &[Symbol], residuals: &Residuals) -> Self {
+    /// `errors` are the estimates that are compared with measured states.
+    pub(super) fn resolve(plant: &Plant, layout: &Layout, errors: &[ScoredEstimate], residuals: &Residuals) -> Self {
         let name = |symbol: Symbol| plant.arena.name(symbol);
         let mut panels = Self::default();
         for (place, (state, _)) in layout.hat.clone().zip(&layout.estimated) {
-            let title = match plant.units.get(state) {
-                Some(_) => "Estimate".to_owned(),
-                None => format!("Estimate of {}", name(*state)),
-            };
-            let mut curves = vec![(*state, Label::estimate(&name(*state)), CurveSource::Table(place))];
-            if let Some(measured) = layout.of_state(*state) {
-                curves.push((*state, Label::name(&name(*state)).remark("measured"), CurveSource::Table(measured)));
+            let standard_error = (place - layout.hat.start) + layout.standard_errors.start;
+            let has_band = layout.standard_errors.contains(&standard_error);
+            let edges = [-1.0, 1.0].map(|side| CurveSource::Edge(place, standard_error, side));
+            let sources = std::iter::once(CurveSource::Table(place)).chain(edges.into_iter().filter(|_| has_band));
+            let estimate = PanelCurve::settling(Label::estimate(&name(*state)), has_band);
+            let mut curves = vec![(*state, estimate, sources.collect())];
+            for (baseline, place) in layout.baselines_of(*state) {
+                let label = Label::estimate(&name(*state)).remark(baseline);
+                curves.push((*state, PanelCurve::settling(label, false), vec![CurveSource::Table(place)]));
             }
+            if let Some(measured) = layout.of_state(*state) {
+                let label = Label::name(&name(*state)).remark("measured");
+                curves.push((*state, PanelCurve::plain(label), vec![CurveSource::Table(measured)]));
+            }
+            panels.add(plant, &Panel::of_estimate(plant, *state), Scale::Linear, curves);
+        }
+        // A recording has noise.
+        let numbered = errors.iter().enumerate();
+        let curves = numbered.map(|(place, ScoredEstimate { estimate, truth, .. })| {
+            let label = Label::error(&estimate.state);
+            let label = estimate.baseline.iter().fold(label, |label, baseline| label.remark(baseline));
+            (layout.symbols[*truth], PanelCurve::settling(label, false), vec![CurveSource::Error(place)])
+        });
+        for (title, curves) in Panel::of_errors(plant, Scale::Linear, curves.collect(), |(symbol, ..)| *symbol) {
             panels.add(plant, &title, Scale::Linear, curves);
         }
-        let numbered = errors.iter().enumerate();
-        let curves = numbered.map(|(place, state)| (*state, Label::error(&name(*state)), CurveSource::Error(place)));
-        panels.add(plant, "Estimation errors", Scale::Log, curves.collect());
         if errors.is_empty() {
             let numbered = residuals.outputs.iter().enumerate();
             let curves = numbered.map(|(place, (output, _))| {
                 let output = plant.y[*output].symbol;
-                (output, Label::name(&name(output)), CurveSource::Residual(place))
+                (output, PanelCurve::settling(Label::name(&name(output)), false), vec![CurveSource::Residual(place)])
             });
             panels.add(plant, "Residuals of the outputs", Scale::Linear, curves.collect());
         }
         let signals = |symbols: Vec<Symbol>, places: std::ops::Range<usize>| {
             let both = symbols.into_iter().zip(places);
-            both.map(|(symbol, place)| (symbol, Label::name(&name(symbol)), CurveSource::Table(place))).collect()
+            let curve = |symbol| PanelCurve::plain(Label::name(&name(symbol)));
+            both.map(|(symbol, place)| (symbol, curve(symbol), vec![CurveSource::Table(place)])).collect()
         };
         let outputs = plant.y.iter().map(|output| output.symbol).collect();
         panels.add(plant, "Outputs", Scale::Linear, signals(outputs, layout.y.clone()));
@@ -66,12 +83,12 @@ impl Panels {
         panels
     }
 
-    fn add(&mut self, plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, Label, CurveSource)>) {
+    fn add(&mut self, plant: &Plant, title: &str, scale: Scale, curves: Vec<(Symbol, PanelCurve, Vec<CurveSource>)>) {
         for curves in Panel::groups(plant, scale, curves, |(symbol, ..)| *symbol) {
-            let (labels, sources): (Vec<_>, Vec<CurveSource>) =
-                curves.into_iter().map(|(symbol, label, from)| ((symbol, label), from)).unzip();
-            self.panels.push(Panel::of_signals(plant, title, scale, labels));
-            self.sources.extend(sources);
+            let (curves, sources): (Vec<_>, Vec<Vec<CurveSource>>) =
+                curves.into_iter().map(|(symbol, curve, from)| ((symbol, curve), from)).unzip();
+            self.panels.push(Panel::of_signals(plant, title, scale, curves));
+            self.sources.extend(sources.into_iter().flatten());
         }
     }
 
@@ -100,15 +117,19 @@ impl Curves<'_> {
                 CurveSource::Table(place) => table[place],
                 CurveSource::Error(place) => errors[place],
                 CurveSource::Residual(place) => residuals[place],
+                CurveSource::Edge(estimate, error, side) => table[estimate] + side * table[error],
             };
             curve.add((t, value));
         }
     }
 
-    /// The points of each panel's curves.
-    pub(super) fn finish(self) -> Vec<Vec<Vec<(f64, f64)>>> {
-        let mut curves = self.curves.into_iter().map(GrowingCurve::finish);
-        let panels = self.panels.panels.iter();
-        panels.map(|panel| curves.by_ref().take(panel.curves.len()).collect()).collect()
+    /// Interrupts all curves at an instant.
+    pub(super) fn interrupt(&mut self, t: f64) {
+        self.curves.iter_mut().for_each(|curve| curve.add((t, f64::NAN)));
+    }
+
+    /// Each panel's curves.
+    pub(super) fn finish(self) -> Vec<Vec<DrawnCurve>> {
+        drawn(&self.panels.panels, self.curves.into_iter().map(GrowingCurve::finish))
     }
 }

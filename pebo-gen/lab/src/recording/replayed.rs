@@ -12,12 +12,16 @@ use super::fault::FaultCount;
 pub struct Replayed {
     /// The rows that were read.
     pub rows: u64,
-    /// The time of the first of them, in seconds.
+    /// Those of the longest piece of the recording: of it are the summary and the residuals.
+    pub scored: u64,
+    /// The time of the first of these, in seconds; times of the summary count from there.
     pub start: f64,
     /// The errors of estimates whose states were measured, the excitation, and the samples that the observer refused.
     pub summary: Summary,
     /// The residuals of the outputs.
     pub residuals: Vec<OutputResidual>,
+    /// The baselines that are given by equations, which only a simulation integrates.
+    pub left_out: Vec<String>,
     /// The faults of rows, by kind, in the order of their first occurrence.
     pub faults: Vec<FaultCount>,
     /// The figure as SVG.
@@ -39,8 +43,10 @@ pub struct OutputResidual {
 impl Replayed {
     /// For people: a table of errors, and a line for each output, and for each kind of fault.
     pub fn text(&self) -> String {
-        let Self { rows, start, summary, residuals, faults, .. } = self;
-        let mut text = format!("{rows} rows from t = {start} s to {} s\n", summary.end);
+        let Self { rows, scored, start, summary, residuals, left_out, faults, .. } = self;
+        let mut text = if scored == rows { format!("{rows} rows") } else { format!("{scored} of {rows} rows,") };
+        text.push_str(&format!(" from t = {start} s to {} s", start + summary.end));
+        text.push_str(if *start == 0.0 { "\n" } else { ", from the first of which times count\n" });
         text.push_str(&summary.text());
         let residual = |OutputResidual { output, unit, score }: &OutputResidual| {
             let unit = unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
@@ -48,6 +54,8 @@ impl Replayed {
             format!("residual of {output}: {rms}{unit} rms, {worst}{unit} at worst from t = {since} s on\n")
         };
         text.extend(residuals.iter().map(residual));
+        let why = "its equations are integrated with those of a plant, in a simulation alone";
+        text.extend(left_out.iter().map(|baseline| format!("not run: the baseline `{baseline}`, as {why}\n")));
         text.extend(faults.iter().map(|fault| format!("{fault}\n")));
         text
     }

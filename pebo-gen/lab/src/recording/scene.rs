@@ -3,7 +3,11 @@
 //! In: an accepted derivation with its model, and the columns. Out: the replay, or every mistake in the sections
 //! `observer` and `recording`. After this, only rows can be wrong.
 
+use std::ops::Range;
+
+use crate::closed_loop::baseline::{NamedBaseline, StartError};
 use crate::closed_loop::scenario::{Periods, ScoredEstimate, scored};
+use crate::closed_loop::scope::{self, Estimates};
 use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
 use crate::observe::request::Request;
@@ -11,7 +15,7 @@ use crate::score::domain::AssumedDomain;
 use crate::summary::advice::{Origin, advise};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
-use pebo_design::model::{Model, Recording};
+use pebo_design::model::{Baseline, Entry, Model, Recording};
 use pebo_design::plant::Plant;
 use pebo_design::program::Program;
 use pebo_design::source::{Diagnostic, Diagnostics, Span};
@@ -32,8 +36,10 @@ pub struct Replay {
     pub(super) layout: Layout,
     /// Indices of the measured states among the recovered ones.
     pub(super) measured: Vec<usize>,
-    /// The estimates of these.
+    /// The estimates of these, then those of measured states by each baseline.
     pub(super) scored: Vec<ScoredEstimate>,
+    /// Baselines, each with the positions of its estimates.
+    pub(super) baselines: Vec<(Range<usize>, NamedBaseline)>,
     /// Their errors.
     pub(super) errors: Program,
     pub(super) residuals: Residuals,
@@ -55,6 +61,8 @@ pub(super) struct Names {
     /// The units of y.
     pub(super) units: Vec<Option<String>>,
     pub(super) u: Vec<String>,
+    /// The baselines that only a simulation can run.
+    pub(super) left_out: Vec<String>,
 }
 
 impl Replay {
@@ -88,15 +96,18 @@ fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut 
     let period = signals.as_ref().and_then(|signals| signals.period).map(|(above, below)| above / below);
     let design = Design::resolve(request, derivation, &numbers, period, problems);
     let (signals, design) = (signals?, design?);
-    let layout = Layout::new(plant, &signals.measured, &design.recovered);
+    let (baselines, left_out) = baselines(request, problems);
+    let (named, resolved): (Vec<&str>, Vec<NamedBaseline>) = baselines.into_iter().unzip();
+    let layout = Layout::new(plant, &signals.measured, &design, &named);
     let name = |symbol: Symbol| arena.name(symbol);
     let hats: Vec<(String, Expr)> =
         layout.estimated.iter().map(|(state, hat)| (name(*state), arena.of_symbol(*hat))).collect();
     let measured: Vec<usize> =
         (0..hats.len()).filter(|place| layout.of_state(layout.estimated[*place].0).is_some()).collect();
-    let compared: Vec<(String, Expr)> = measured.iter().map(|place| hats[*place].clone()).collect();
-    let (scored, errors) = scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &compared, &[]);
-    let states: Vec<Symbol> = measured.iter().map(|place| layout.estimated[*place].0).collect();
+    let all: Estimates = plant.x.iter().map(|state| (name(state.symbol), arena.of_symbol(state.symbol))).collect();
+    let compared: Vec<(String, Estimates)> = named.iter().map(|name| ((*name).to_owned(), all.clone())).collect();
+    let (scored, errors) =
+        scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &compared);
     let errors = problems.keep(layout.program(arena, &errors, span))?;
     let assumed = AssumedDomain::of(plant, &layout.symbols, |assumed| {
         problems.keep(layout.program(arena, &arena.substitute_all(assumed, &numbers), span))
@@ -104,14 +115,22 @@ fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut 
     let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
     Some(Replay {
         title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
-        panels: Panels::resolve(plant, &layout, &states, &residuals),
-        columns: columns(&hats, &measured),
+        panels: Panels::resolve(plant, &layout, &scored, &residuals),
+        columns: columns((plant, &layout), &measured, design.predicts()),
         names: Names {
             columns: signals.wanted.iter().map(|column| log.columns()[*column].clone()).collect(),
             y: plant.y.iter().map(|output| name(output.symbol)).collect(),
             units: plant.y.iter().map(|output| plant.units.get(&output.symbol).cloned()).collect(),
             u: plant.commanded().map(name).collect(),
+            left_out,
         },
+        baselines: layout
+            .baselines
+            .clone()
+            .step_by(plant.x.len().max(1))
+            .map(|first| first..first + plant.x.len())
+            .zip(resolved)
+            .collect(),
         signals,
         design,
         layout,
@@ -124,14 +143,34 @@ fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut 
     })
 }
 
-/// `t`, then estimates, each with its error if the state was measured.
-fn columns(hats: &[(String, Expr)], measured: &[usize]) -> Vec<String> {
+/// The baselines by name, with their names, and the names of those that have equations.
+fn baselines<'a>(request: &Request<'a>, problems: &mut Diagnostics) -> (Vec<(&'a str, NamedBaseline)>, Vec<String>) {
+    let Request { model, plant, .. } = *request;
+    let Some(simulation) = &model.simulation else { return (Vec::new(), Vec::new()) };
+    let names = scope::Names { model, simulation, plant };
+    let (with_equations, named): (Vec<_>, Vec<_>) =
+        simulation.baselines.iter().partition(|entry| entry.value.equations().is_some());
+    let mut resolve = |entry: &'a Entry<Baseline>| {
+        let resolved = NamedBaseline::resolve(&names, entry, StartError::Assumed, problems)?;
+        Some((entry.name.value.as_str(), resolved))
+    };
+    let resolved = named.into_iter().filter_map(&mut resolve).collect();
+    (resolved, with_equations.into_iter().map(|entry| entry.name.value.clone()).collect())
+}
+
+/// `t`, then estimates, each with its error if the state was measured; estimates of baselines; then the standard errors,
+/// if they are predicted.
+fn columns((plant, layout): (&Plant, &Layout), measured: &[usize], predicted: bool) -> Vec<String> {
+    let name = |symbol: &Symbol| plant.arena.name(*symbol);
     let mut columns = vec![Recording::T.to_owned()];
-    for (recovered, (state, _)) in hats.iter().enumerate() {
-        columns.push(format!("{state}_hat"));
+    for (recovered, (state, _)) in layout.estimated.iter().enumerate() {
+        columns.push(format!("{}_hat", name(state)));
         if measured.contains(&recovered) {
-            columns.push(format!("{state}{}", Trace::ERROR));
+            columns.push(format!("{}{}", name(state), Trace::ERROR));
         }
     }
+    columns.extend(layout.of_baselines.iter().map(|(baseline, state)| format!("{baseline}.{}_hat", name(state))));
+    let predicted = layout.estimated.iter().filter(|_| predicted);
+    columns.extend(predicted.map(|(state, _)| format!("{}{}", name(state), Trace::STANDARD_ERROR)));
     columns
 }

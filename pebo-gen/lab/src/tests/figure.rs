@@ -50,7 +50,15 @@ fn the_usual_panels_and_odd_titles_are_drawn() {
     let text = with(SPRING, "model: spring", "model: spring\ntitle: \"a < b & \\u0007 c\"");
     let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
     assert_well_formed(&svg);
-    assert!(svg.contains("Estimation errors") && svg.contains("Outputs") && !svg.contains("Inputs"));
+    assert!(svg.contains("Estimate of v") && svg.contains("Estimation errors"));
+    assert!(svg.contains("Outputs") && !svg.contains("Inputs") && !svg.contains("fill-opacity"));
+    // Under noise an error is shown as it is, one without a unit by itself; known numbers have a standard error.
+    let (plant, loop_) = (SPRING.split("observer:").next().unwrap(), SPRING.split("simulation:").nth(1).unwrap());
+    let numbers = "observer: {sensors: {q: 0.01}, start: {v: 1}, disturbance: {v: 0}}";
+    let text = with(&format!("{plant}{numbers}\nsimulation:{loop_}"), "q: 1}", "q: 1}, noise: {q: 0.01}");
+    let svg = figure(&resolve(&text, &Overrides::default()).unwrap());
+    assert_well_formed(&svg);
+    assert!(svg.contains("Error of v") && !svg.contains("Estimation errors") && svg.contains("fill-opacity"));
 }
 
 #[test]

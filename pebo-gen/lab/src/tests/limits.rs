@@ -154,6 +154,7 @@ y: [s]
 assume: [s > 0, a >= 0]
 f_x: {a: 0}
 f_y: {s: -a}
+phi: [a]
 simulation: {duration: 2, step: 0.01, initial: {a: 1, s: 1}}
 ";
     let trace = run(text, &Overrides::default());

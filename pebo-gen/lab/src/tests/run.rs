@@ -226,8 +226,8 @@ fn the_error_of_an_angle_is_the_shorter_way_round() {
     let panels = "  panels: [{title: Error, curves: [hat(q) - q, 2*(hat(q) - q)]}]\n";
     let drawn = run(&format!("{ROTOR}{panels}"), &short(2.0));
     let highest = |curve: &Vec<(f64, f64)>| curve.iter().fold(0.0_f64, |most, (_, error)| most.max(error.abs()));
-    assert!(highest(&drawn.curves[0][0]) <= period / 2.0 + 1e-12);
-    assert!(highest(&drawn.curves[0][1]) > 10.0, "no error, but what was written");
+    assert!(highest(&drawn.curves[0][0].line) <= period / 2.0 + 1e-12);
+    assert!(highest(&drawn.curves[0][1].line) > 10.0, "no error, but what was written");
     // The angle itself has turned several periods by then.
     assert!(column("q").last().unwrap() > &6.9 && column("q_hat").last().unwrap() < &0.7);
 }
@@ -283,6 +283,8 @@ u: [v]
 assume: [v > 1]
 f_x: {a: -a}
 g_y: {s: a/v}
+phi: [a]
+observer: {gain: 50, filter: 5}
 simulation: {duration: 1, step: 0.01, initial: {a: 1}, control: {v: 25 + t}}
 ";
     let s = run(text, &Overrides::default()).column("s").unwrap();
@@ -291,4 +293,29 @@ simulation: {duration: 1, step: 0.01, initial: {a: 1}, control: {v: 25 + t}}
     let fed = run(&with(text, "v: 25 + t", "v: 20 + s"), &Overrides::default());
     let (s, v) = (fed.column("s").unwrap()[0], fed.column("v").unwrap()[0]);
     assert!((v - (20.0 + s)).abs() < 1e-15 && (s - 0.05).abs() < 1e-3, "{s} {v}");
+}
+
+#[test]
+fn standard_errors_are_columns_where_they_are_predicted() {
+    let known = SPRING.split("observer:").next().unwrap().to_owned()
+        + "observer: {sensors: {q: 0.01}, start: {v: 1}, disturbance: {v: 0}}\nsimulation:"
+        + SPRING.split("simulation:").nth(1).unwrap();
+    let trace = run(&known, &Overrides::default());
+    assert_eq!(trace.columns().last().map(String::as_str), Some("v_std"));
+    let errors = trace.column("v_std").unwrap();
+    // That of the start, then ever smaller ones, whose root mean square once the error has settled is the expected one.
+    assert!((errors[0] - 1.0).abs() < 1e-9, "{}", errors[0]);
+    let score = &trace.summary().estimates[0];
+    let (mut sum, mut count) = (0.0, 0.0);
+    // The expected one is of every second row.
+    for (t, error) in trace.column("t").unwrap().iter().zip(&errors).step_by(2) {
+        if *t >= score.score.since {
+            sum += error * error;
+            count += 1.0;
+        }
+    }
+    let (seen, expected) = ((sum / count).sqrt(), score.expected.unwrap());
+    assert!((seen / expected - 1.0).abs() < 1e-9, "{seen} {expected}");
+    // Gains do not say what sensors err by.
+    assert!(run(SPRING, &Overrides::default()).column("v_std").is_none());
 }

@@ -21,7 +21,7 @@ simulation: {duration: 10, step: 0.01, initial: {v: 2, q: 1}}
 fn the_plant_uses_the_time_and_the_observer_measures_it() {
     let trace = run(SHAKEN, &Overrides::default());
     // The time is the first column, and stands there once.
-    assert!(trace.csv().starts_with("t,v,q,v_hat,v_error\n"), "{}", &trace.csv()[..40]);
+    assert!(trace.csv().starts_with("t,v,q,v_hat,v_error,v_std\n"), "{}", &trace.csv()[..40]);
     let [t, v, q] = ["t", "v", "q"].map(|name| trace.column(name).expect("a column"));
     for ((t, v), q) in t.iter().zip(&v).zip(&q) {
         // q'' + q = 3 sin(2 t) is solved by 4 sin(t) - sin(2 t) + cos(t).

@@ -32,11 +32,11 @@ impl<const N: usize> Gain<N> {
         }
     }
 
-    /// The correction of the states by a sample at the end of a step; nothing where there is none.
-    pub(super) fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+    /// The correction of the states by a sample at the end of a step of `dt` seconds; nothing where there is none.
+    pub(super) fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>, dt: f64) -> Option<SVector<f64, N>> {
         match self {
             Self::Kalman(filter) => Some(filter.correct(sample)),
-            Self::Luenberger(observer) => observer.correct(step, sample),
+            Self::Luenberger(observer) => observer.correct(step, sample, dt),
         }
     }
 }
@@ -83,7 +83,7 @@ impl<const N: usize> Kalman<N> {
 /// The poles of a Luenberger observer, and its gain.
 #[derive(Clone, Debug)]
 pub(super) struct Luenberger<const N: usize> {
-    /// Of a step: `e^(p dt)`.
+    /// Of continuous time, in 1/s.
     pub(super) poles: Vec<f64>,
     /// The number of outputs.
     pub(super) outputs: usize,
@@ -92,11 +92,11 @@ pub(super) struct Luenberger<const N: usize> {
 }
 
 impl<const N: usize> Luenberger<N> {
-    fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>) -> Option<SVector<f64, N>> {
+    fn correct(&mut self, step: &Transition<N>, sample: &Sample<N>, dt: f64) -> Option<SVector<f64, N>> {
         let known = self.known.filter(|(transition, slopes, _)| (transition, slopes) == (&step.whole, &sample.slopes));
         let gain = match known {
             Some((.., gain)) => gain,
-            None => self.gain(&step.whole, &(sample.slopes * step.whole))?,
+            None => self.gain(&step.whole, &(sample.slopes * step.whole), dt)?,
         };
         self.known = Some((step.whole, sample.slopes, gain));
         Some(gain * sample.innovation)
@@ -109,11 +109,16 @@ impl<const N: usize> Luenberger<N> {
     /// linear system*, IEEE Trans. Military Electronics, 1964. Here each `g_i` takes one output, in turn, so that
     /// outputs of unequal units are not mixed: `X` has an inverse where the states of its poles are observable from
     /// each output.
-    fn gain(&self, transition: &SMatrix<f64, N, N>, output_slopes: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
+    fn gain(
+        &self,
+        transition: &SMatrix<f64, N, N>,
+        output_slopes: &SMatrix<f64, N, N>,
+        dt: f64,
+    ) -> Option<SMatrix<f64, N, N>> {
         let (mut rows, mut mixing) = (SMatrix::<f64, N, N>::identity(), SMatrix::<f64, N, N>::zeros());
         for (row, pole) in self.poles.iter().enumerate() {
             mixing[(row, row % self.outputs)] = 1.0;
-            let shifted = transition - SMatrix::identity() * *pole;
+            let shifted = transition - SMatrix::identity() * (pole * dt).exp();
             let right = output_slopes.transpose() * mixing.row(row).transpose();
             rows.set_row(row, &(shifted.transpose().try_inverse()? * right).transpose());
         }

@@ -21,7 +21,7 @@ use super::layout::baseline_estimates;
 use super::scope::{Estimates, Names};
 use equations::ResolvedEquations;
 
-pub(crate) use sampled::{Follower, NamedBaseline};
+pub(crate) use sampled::{Follower, NamedBaseline, StartError};
 
 /// A baseline, resolved.
 #[derive(Debug)]
@@ -49,7 +49,7 @@ impl ResolvedBaseline {
                 let estimates = estimates.map(|(state, symbol)| (state, names.plant.arena.of_symbol(symbol))).collect();
                 (
                     ResolvedEquations { estimates, ..ResolvedEquations::default() },
-                    Some(NamedBaseline::resolve(names, entry, problems)?),
+                    Some(NamedBaseline::resolve(names, entry, StartError::Known, problems)?),
                 )
             }
         };

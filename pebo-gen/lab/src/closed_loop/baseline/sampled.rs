@@ -37,14 +37,30 @@ enum Rule {
     Luenberger(Vec<f64>),
 }
 
+/// The standard deviation of a filter's estimates at the start, where that is not written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StartError {
+    /// The error itself, as the truth is simulated.
+    Known,
+    /// That of the model's own observer, as nobody knows the truth of a recording.
+    Assumed,
+}
+
 impl NamedBaseline {
     /// Resolves a baseline that has no equations; mistakes are reported.
-    pub(super) fn resolve(names: &Names, entry: &Entry<Baseline>, problems: &mut Diagnostics) -> Option<Self> {
+    pub(crate) fn resolve(
+        names: &Names,
+        entry: &Entry<Baseline>,
+        start_error: StartError,
+        problems: &mut Diagnostics,
+    ) -> Option<Self> {
         let place = (entry.name.value.as_str(), entry.name.span);
         let plant = LinearisedPlant::resolve(names, place, problems)?;
         let (rule, initial) = match &entry.value {
             Baseline::Equations(_) => return None,
-            Baseline::Kalman(written) => (kalman(names, written, &plant, place, problems)?, &written.initial),
+            Baseline::Kalman(written) => {
+                (kalman(names, written, (&plant, start_error), place, problems)?, &written.initial)
+            }
             Baseline::Luenberger(written) => (luenberger(written, &plant, place, problems)?, &written.initial),
         };
         let arena = &names.plant.arena;
@@ -67,12 +83,12 @@ impl NamedBaseline {
         Some(Self { plant, start, rule })
     }
 
-    /// The observer at its first sample, where the states are truly `x`.
-    pub(crate) fn follower(&self, x: &[f64], y: &[f64], dt: f64) -> Box<dyn Follower> {
+    /// The observer at its first sample; the states are truly `x`, where that is known.
+    pub(crate) fn follower(&self, x: Option<&[f64]>, y: &[f64]) -> Box<dyn Follower> {
         match self.plant.states.len().max(self.plant.outputs) {
-            0..=4 => Box::new(PaddedFollower::<4>::new(self, x, y, dt)),
-            5..=8 => Box::new(PaddedFollower::<8>::new(self, x, y, dt)),
-            _ => Box::new(PaddedFollower::<LARGEST>::new(self, x, y, dt)),
+            0..=4 => Box::new(PaddedFollower::<4>::new(self, x, y)),
+            5..=8 => Box::new(PaddedFollower::<8>::new(self, x, y)),
+            _ => Box::new(PaddedFollower::<LARGEST>::new(self, x, y)),
         }
     }
 }
@@ -85,7 +101,7 @@ fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
 fn kalman(
     names: &Names,
     written: &Kalman,
-    plant: &LinearisedPlant,
+    (plant, start_error): (&LinearisedPlant, StartError),
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -115,7 +131,23 @@ fn kalman(
         plant.states.iter().map(|state| number(entries, &arena.name(*state))).collect()
     };
     let disturbance = of_states(&written.disturbance).into_iter().map(Option::unwrap_or_default).collect();
-    Some(Rule::Kalman { start: of_states(&written.start), disturbance, sensors })
+    let mut start = of_states(&written.start);
+    if start_error == StartError::Assumed {
+        let own = of_states(&names.model.observer.start);
+        for (state, (deviation, own)) in names.plant.x.iter().zip(start.iter_mut().zip(own)) {
+            *deviation = deviation.or(own);
+            if deviation.is_none() {
+                let state = arena.name(state.symbol);
+                let message = format!("`{name}` needs to know how wrong its estimate of `{state}` can be at the start");
+                problems.push(
+                    Diagnostic::error(Code::SimulationIncomplete, span, message)
+                        .help(format!("add `start: {{{state}: 1}}`, a standard deviation, to it or to `observer`")),
+                );
+                return None;
+            }
+        }
+    }
+    Some(Rule::Kalman { start, disturbance, sensors })
 }
 
 fn luenberger(
@@ -138,8 +170,8 @@ fn luenberger(
 
 /// A running observer of any size.
 pub(crate) trait Follower: fmt::Debug {
-    /// Takes the inputs during a step, and the outputs at its end if their sample arrived.
-    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]);
+    /// Takes the inputs during an interval of `dt` seconds, and the outputs at its end if their sample arrived.
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64], dt: f64);
 
     /// Writes the estimates of x; NaN where it has none.
     fn write(&self, hat: &mut [f64]);
@@ -150,12 +182,11 @@ struct PaddedFollower<const N: usize> {
     plant: PaddedPlant<N>,
     gain: Gain<N>,
     state: SVector<f64, N>,
-    dt: f64,
 }
 
 impl<const N: usize> PaddedFollower<N> {
-    fn new(sampled: &NamedBaseline, x: &[f64], y: &[f64], dt: f64) -> Self {
-        let mut start = vec![0.0; x.len()];
+    fn new(sampled: &NamedBaseline, x: Option<&[f64]>, y: &[f64]) -> Self {
+        let mut start = vec![0.0; sampled.start.outputs.len()];
         Interpreter::new(&sampled.start).run(y, &mut start);
         let mut state = pad::<N>(&start);
         for (output, place) in sampled.plant.places.iter().enumerate() {
@@ -164,15 +195,14 @@ impl<const N: usize> PaddedFollower<N> {
             }
         }
         let gain = match &sampled.rule {
-            Rule::Luenberger(poles) => Gain::Luenberger(gain::Luenberger {
-                poles: poles.iter().map(|pole| (pole * dt).exp()).collect(),
-                outputs: y.len(),
-                known: None,
-            }),
+            Rule::Luenberger(poles) => {
+                Gain::Luenberger(gain::Luenberger { poles: poles.clone(), outputs: y.len(), known: None })
+            }
             Rule::Kalman { start: written, disturbance, sensors } => {
                 let mut deviations = SVector::<f64, N>::zeros();
-                for (place, truth) in x.iter().enumerate() {
-                    deviations[place] = written[place].unwrap_or(truth - start[place]);
+                for (place, start) in start.iter().enumerate() {
+                    let error = || x.map_or(f64::INFINITY, |x| x[place] - start);
+                    deviations[place] = written[place].unwrap_or_else(error);
                 }
                 for (output, place) in sampled.plant.places.iter().enumerate() {
                     if let Some(place) = place {
@@ -186,17 +216,17 @@ impl<const N: usize> PaddedFollower<N> {
                 })
             }
         };
-        Self { plant: PaddedPlant::new(&sampled.plant), gain, state, dt }
+        Self { plant: PaddedPlant::new(&sampled.plant), gain, state }
     }
 }
 
 impl<const N: usize> Follower for PaddedFollower<N> {
-    fn sample(&mut self, y: Option<&[f64]>, u: &[f64]) {
-        let Ok(step) = self.plant.advance(&self.state, u, self.dt) else {
+    fn sample(&mut self, y: Option<&[f64]>, u: &[f64], dt: f64) {
+        let Ok(step) = self.plant.advance(&self.state, u, dt) else {
             self.state.fill(f64::NAN);
             return;
         };
-        self.gain.predict(&step, self.dt);
+        self.gain.predict(&step, dt);
         self.state = step.state;
         let Some(y) = y else { return };
         let (predicted, slopes) = self.plant.measure(&step.state, u);
@@ -208,7 +238,7 @@ impl<const N: usize> Follower for PaddedFollower<N> {
                 sample.slopes.row_mut(output).fill(0.0);
             }
         }
-        match self.gain.correct(&step, &sample) {
+        match self.gain.correct(&step, &sample, dt) {
             Some(correction) => self.state += correction,
             None => self.state.fill(f64::NAN),
         }

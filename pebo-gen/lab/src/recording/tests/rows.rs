@@ -29,7 +29,7 @@ t,q,f,note
         "empty cells of `f`: 1, first in line 6",
         "rows without a value of `f`: the value before was held: 2, first in line 6",
         "cells of `f` that are NaN or infinite: 1, first in line 8",
-        "rows skipped whose time is not later than that of the row before: 2, first in line 9",
+        "rows skipped whose time is not between those of their neighbours: 2, first in line 9",
         "empty cells of `t`: 1, first in line 11",
         "rows skipped that have no time: 1, first in line 11",
         "gaps, where the time steps by more than one and a half periods: 1, first in line 13",
@@ -104,7 +104,10 @@ fn a_row_that_is_no_row_is_refused_with_line_and_column() {
         ("# c\nt,q,f\n\n0,0,0\n# c\n0.1,0,zero\n", "line 6, column 3: `zero` in the column `f` is not a number"),
         ("t,q,f\r\n0,0,0\r\n0.1,0\r\n", "line 3, column 3: the row has 2 cells and the header 3"),
         ("t,q,f\n0,0,0,1\n0,0,0\n", "line 2, column 4: the row has 4 cells and the header 3"),
-        ("t;q;f\n0;0,5;0\n", "line 2, column 2: `0,5` in the column `q` is not a number | write decimals with a point"),
+        (
+            "t,q,f\n0,\"0,5\",0\n",
+            "line 2, column 2: `0,5` in the column `q` is not a number | write decimals with a point",
+        ),
         ("t,q,f\n0,\u{fffd},0\n", "line 2, column 2: `\u{fffd}` in the column `q` is not a number"),
         ("t,q,f\n0,\"0,0\n1,0,0\n", "line 2: a quote is not closed"),
         ("t,q,f\n", "log.csv has no rows"),
@@ -178,4 +181,77 @@ fn an_output_that_is_an_angle_goes_on_over_its_turns() {
     assert!((whole - 0.25).abs() < 1e-3 && (wrapped - whole).abs() < 1e-12, "{whole} {wrapped}");
     let ignored = last(&compass.replace("angles: {q: 2*pi}\n", ""), &within_a_turn);
     assert!((ignored - whole).abs() > 0.01, "{ignored} {whole}");
+}
+
+/// Rows of the cart from rest under a force of 1 N, at these times.
+fn pushed(times: impl IntoIterator<Item = f64>, start: f64) -> String {
+    times.into_iter().map(|t| format!("{t},{},1\n", (t - start).powi(2) / 2.0)).collect()
+}
+
+fn times(start: f64, count: u32) -> Vec<f64> {
+    (0..count).map(|k| start + f64::from(k) / 64.0).collect()
+}
+
+#[test]
+fn a_clock_that_begins_again_or_jumps_begins_a_piece() {
+    // It begins again, and later jumps by a day.
+    let pieces = [(0.0, 100), (0.0, 200), (86400.0, 50)];
+    let rows: Vec<String> = pieces.iter().map(|(start, count)| pushed(times(*start, *count), *start)).collect();
+    let (replayed, estimates) = replay(CART, &format!("t,q,f\n{}", rows.concat())).expect("a replay");
+    let words = "new pieces, where the clock begins again or jumps and the observer with it: 2, first in line 102";
+    assert_eq!(replayed.faults.iter().map(ToString::to_string).collect::<Vec<_>>(), [words]);
+    // Each piece is as if it stood alone, and the summary is that of the longest.
+    let alone: Vec<_> = rows.iter().map(|rows| replay(CART, &format!("t,q,f\n{rows}")).expect("a replay")).collect();
+    let without_header = |text: &str| text.split_once('\n').expect("a header").1.to_owned();
+    let joined: String = alone.iter().map(|(_, estimates)| without_header(estimates)).collect();
+    assert_eq!(without_header(&estimates), joined);
+    assert_eq!((replayed.rows, replayed.scored, replayed.start), (350, 200, 0.0));
+    assert_eq!(replayed.summary, alone[1].0.summary);
+    assert!(replayed.text().starts_with("200 of 350 rows, from t = 0 s to 3.109375 s\n"), "{}", replayed.text());
+    // Two rows are no piece: they are out of place.
+    let early: String = times(0.0, 100).iter().map(|t| pushed([*t], 0.0)).collect();
+    let (alone, _) = replay(CART, &format!("t,q,f\n{early}")).expect("a replay");
+    let (astray, _) = replay(CART, &format!("t,q,f\n{early}{}", pushed([0.1, 0.2], 0.0))).expect("a replay");
+    assert_eq!(astray.summary, alone.summary);
+    let misplaced = "rows skipped whose time is not between those of their neighbours: 2, first in line 102";
+    assert_eq!(astray.faults.iter().map(ToString::to_string).collect::<Vec<_>>(), [misplaced]);
+}
+
+#[test]
+fn times_count_from_the_first_row() {
+    let late = pushed(times(1e6, 300), 1e6);
+    let (replayed, estimates) = replay(CART, &format!("t,q,f\n{late}")).expect("a replay");
+    let (early, _) = replay(CART, &format!("t,q,f\n{}", pushed(times(0.0, 300), 0.0))).expect("a replay");
+    assert_eq!(replayed.summary, early.summary);
+    assert_eq!(replayed.start, 1e6);
+    let head = "300 rows from t = 1000000 s to 1000004.671875 s, from the first of which times count\n";
+    assert!(replayed.text().starts_with(head), "{}", replayed.text());
+    // The table has the times of the log.
+    assert!(estimates.lines().nth(1).is_some_and(|row| row.starts_with("1000000,")), "{estimates}");
+}
+
+#[test]
+fn numbers_times_and_units_are_read_as_loggers_write_them() {
+    let plain = "t,q,f\n0,0,1\n0.5,0.125,1\n1,0.5,1\n1.25,0.78125,1\n";
+    let (_, expected) = replay(CART, plain).expect("a replay");
+    for recording in [
+        // Decimal commas; a row of units, with a 1 for none.
+        "t;q;f\n0;0;1\n0,5;0,125;1\n1;0,5;1,0\n1,25;0,78125;1\n",
+        "t,q,f\n[s],m,N\n0,0,1\n0.5,0.125,1\n1,0.5,1\n1.25,0.78125,1\n",
+        "t\tq\tf\ns\t1\tN\n0\t0\t1\n0.5\t0.125\t1\n1\t0.5\t1\n1.25\t0.78125\t1\n",
+        // Dates and times of day.
+        "t,q,f\n2026-11-27T23:59:59Z,0,1\n2026-11-27T23:59:59.5Z,0.125,1\n2026-11-28T00:00:00Z,0.5,1\n\
+         2026-11-28T00:00:00.250Z,0.78125,1\n",
+        "t;q;f\n10:00:00;0;1\n10:00:00,5;0,125;1\n10:00:01;0,5;1\n10:00:01,25;0,78125;1\n",
+    ] {
+        let (replayed, found) = replay(CART, recording).expect("a replay");
+        assert_eq!((found, replayed.faults.len()), (expected.clone(), 0), "{recording}");
+    }
+    // A comma that separates columns is no decimal comma; only the first row can be one of units.
+    let said = refusal("t,q,f\n0,\"0,5\",1\n");
+    assert!(
+        said.contains("`0,5` in the column `q` is not a number") && said.contains("decimals with a point"),
+        "{said}"
+    );
+    assert!(refusal("t,q,f\ns,m,N\ns,m,N\n").contains("line 3, column 1"));
 }

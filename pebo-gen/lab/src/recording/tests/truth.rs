@@ -118,3 +118,24 @@ fn with_the_step_of_the_simulation_they_are_the_same_to_the_last_bit() -> Result
     }
     Ok(())
 }
+
+#[test]
+fn baselines_run_beside_the_observer() -> Result<(), Failure> {
+    // With the same samples and numbers they are those of the simulation.
+    let filters = "kalman: {start: {v: 5}, sensors: {q: 0.001}}, luenberger: {poles: [-3, -4]}";
+    let model = SHAKEN.replace("q: 1}}", &format!("q: 1}}, baselines: {{{filters}}}}}"));
+    let trace = simulated(&model, (10.0, 0.01));
+    let (replayed, csv) = replay(&format!("{model}recording: {{step: 0.01}}\n"), &trace.csv())?;
+    assert!(csv.starts_with("t,v_hat,v_error,kalman.v_hat,luenberger.v_hat,v_std\n"), "{}", &csv[..60]);
+    assert!(apart(&trace, &csv) < 1e-12, "{}", apart(&trace, &csv));
+    let names: Vec<String> = replayed.summary.estimates.iter().map(|scored| scored.estimate.name()).collect();
+    assert_eq!(names, ["v", "kalman.v", "luenberger.v"]);
+    assert!(replayed.figure.contains("(kalman)"));
+    // Without a start of its own a filter has that of the observer; one with equations is named.
+    let own = "own: {state: {a: 5*(q - a)}, estimate: {v: a}}, kalman: {sensors: {q: 0.001}}";
+    let other = SHAKEN.replace("q: 1}}", &format!("q: 1}}, baselines: {{{own}}}}}"));
+    let (replayed, _) = replay(&format!("{other}recording: {{step: 0.01}}\n"), &trace.csv())?;
+    assert!(replayed.text().contains("not run: the baseline `own`"), "{}", replayed.text());
+    assert_eq!(replayed.summary.estimates.len(), 2);
+    Ok(())
+}
