@@ -74,7 +74,7 @@ pub(super) fn sections(
 
 /// Runs the closed loop that the model describes, if it describes one.
 #[cfg(feature = "simulate")]
-fn described(derived: &Derived, request: &Request) -> Option<Result<(Run, Option<Diagnostic>), Refusal>> {
+fn described(derived: &Derived, request: &Request) -> Option<Result<(Run, Vec<Diagnostic>), Refusal>> {
     derived.model.simulation.as_ref()?;
     Some(run::run(derived, request, &RunRequest { figure: true, ..RunRequest::default() }))
 }

@@ -72,7 +72,7 @@ fn run(
     derived: &Derived,
     request: &Request,
     tape: Tape<'_>,
-) -> Result<(Replayed, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
+) -> Result<(Replayed, Vec<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let unreadable = |found: Unreadable| (Standing::Malformed, vec![found.explain(tape.name)]);
     let mut log = Log::open(tape.name, tape.recording).map_err(unreadable)?;
     let replay = derived.replay(&log).map_err(|found| (Standing::Malformed, found))?;

@@ -53,7 +53,7 @@ pub(super) fn run(
     derived: &Derived,
     request: &Request,
     wanted: &RunRequest,
-) -> Result<(Run, Option<Diagnostic>), (Standing, Vec<Diagnostic>)> {
+) -> Result<(Run, Vec<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let mut scenario = derived.scenario(&wanted.overrides).map_err(|found| (Standing::Malformed, found))?;
     let runs = wanted.runs.unwrap_or(1).max(1);
     let samples = scenario.samples().saturating_mul(runs);

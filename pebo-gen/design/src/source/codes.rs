@@ -347,6 +347,11 @@ codes! {
          run. The notes say what was seen: samples that the observer refused, data that did not determine the unknown \
          (excitation), an error that still falls, or one that rests because the plant and its sensors are not what the \
          model says. The run itself is as it was asked for, and its files are written."
+    NumbersContradicted "numbers-contradicted" "samples contradict the numbers of an observer"
+        "An observer of known numbers expects each sample, and knows by how much that will be off. The normalised square of \
+         the difference, the innovation, is 1 on average where numbers, model and plant agree. Above 5 the plant does more \
+         than its model says, or sensors scatter more than `sensors`; below 0.2 they scatter less. The standard errors that \
+         follow from the numbers are then not those of the estimates, and none is given."
     SimulationFailed "simulation-failed" "a simulation stopped before its end"
         "The closed loop left the domain of a formula, grew beyond all bounds, or is too stiff for the explicit \
          integrator. The message says when and where. A shorter step, other gains or another start may help."

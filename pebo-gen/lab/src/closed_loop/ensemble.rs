@@ -119,10 +119,11 @@ impl Scenario {
     }
 
     /// The advice on many runs, if an estimate did not settle in at least one.
-    pub fn advise_on(&self, ensemble: &Ensemble) -> Option<Diagnostic> {
+    pub fn advise_on(&self, ensemble: &Ensemble) -> Vec<Diagnostic> {
         let (count, first) = &ensemble.unsettled;
-        let diagnostic = self.advise(first.as_ref()?)?;
-        Some(diagnostic.note(format!("so it is in {count} of {} runs, of which this is the first", ensemble.runs)))
+        let found = first.as_ref().map(|first| self.advise(first)).unwrap_or_default();
+        let note = format!("so it is in {count} of {} runs, of which this is the first", ensemble.runs);
+        found.into_iter().map(|diagnostic| diagnostic.note(note.clone())).collect()
     }
 }
 

@@ -29,7 +29,7 @@ use crate::observe::excitation::ExcitationMonitor;
 use crate::observe::interpreted::observer;
 use crate::score::Scorer;
 use crate::score::expected::ExpectedErrors;
-use crate::summary::{EstimateScore, Summary};
+use crate::summary::{EstimateScore, Summary, contradiction};
 use crate::timing::real;
 
 /// The number of reports of progress.
@@ -94,9 +94,11 @@ impl Scenario {
                 return Err(Failure::Stopped { at: machine.table[TIME] });
             }
         }
+        let surprise = machine.driver.surprise();
+        let contradiction = contradiction(surprise, self.is_noisy());
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
-            let own = scored.estimate.baseline.is_none();
+            let own = scored.estimate.baseline.is_none() && contradiction.is_none();
             let expected = own.then(|| expected.since(score.since, place)).flatten();
             EstimateScore {
                 estimate: scored.estimate.clone(),
@@ -116,7 +118,8 @@ impl Scenario {
             parted: machine.driver.parted(),
             restarts: machine.driver.restarts(),
             outside: assumed.outside(),
-            surprise: machine.driver.surprise(),
+            surprise,
+            contradiction,
             certainty: certain.certainty(),
             known: self.design.settings.known.clone(),
         })

@@ -138,8 +138,14 @@ impl Scenario {
         &self.estimator
     }
 
-    /// The advice on a run that did not converge: reason and mend.
-    pub fn advise(&self, summary: &Summary) -> Option<Diagnostic> {
+    /// True if samples scatter.
+    pub(crate) fn is_noisy(&self) -> bool {
+        self.departures.contains(&"noise")
+    }
+
+    /// The advice on a run whose samples contradict the observer's numbers, and on one that did not converge: reason and
+    /// mend.
+    pub fn advise(&self, summary: &Summary) -> Vec<Diagnostic> {
         advise(
             summary,
             (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moving_state.as_deref())),

@@ -17,7 +17,7 @@ use crate::observe::interpreted::observer;
 use crate::score::Scorer;
 use crate::score::domain::DomainMonitor;
 use crate::score::expected::ExpectedErrors;
-use crate::summary::{EstimateScore, Summary};
+use crate::summary::{EstimateScore, Summary, contradiction};
 use pebo_design::program::Interpreter;
 use pebo_runtime::unwrapped;
 
@@ -298,9 +298,12 @@ impl<'a> Piece<'a> {
         let start = self.first.filter(|_| self.samples > 0)?;
         self.look();
         let Replay { names, residuals, design, scored, measured, .. } = self.replay;
+        let surprise = self.driver.surprise();
+        let contradiction = contradiction(surprise, true);
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
-            let expected = measured.get(place).and_then(|estimate| self.expected.since(score.since, *estimate));
+            let own = measured.get(place).filter(|_| contradiction.is_none());
+            let expected = own.and_then(|estimate| self.expected.since(score.since, *estimate));
             EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: false }
         };
         let misfit = |((output, _), score): (&(usize, bool), &Scorer)| OutputResidual {
@@ -322,7 +325,8 @@ impl<'a> Piece<'a> {
                 parted: self.driver.parted(),
                 restarts: self.driver.restarts(),
                 outside: self.assumed.outside(),
-                surprise: self.driver.surprise(),
+                surprise,
+                contradiction,
                 certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),
             },

@@ -83,8 +83,9 @@ impl Replay {
         replay.ok_or_else(Vec::new)
     }
 
-    /// The advice on a recording on which the estimates did not converge: reason and mend.
-    pub fn advise(&self, replayed: &Replayed) -> Option<Diagnostic> {
+    /// The advice on a recording that contradicts the observer's numbers, or on which the estimates did not converge:
+    /// reason and mend.
+    pub fn advise(&self, replayed: &Replayed) -> Vec<Diagnostic> {
         advise(&replayed.summary, (&self.design.settings.estimator, Origin::Recorded), self.span)
     }
 }

@@ -1,16 +1,17 @@
-//! Advice on a run that did not converge: reason and mend.
+//! Advice on a run: reason and mend.
 //!
 //! In: the summary of a run, and the differences of its plant and sensors from the model, or that they were recorded.
-//! Out: a diagnostic, if an estimate of the model's observer has not settled, or if a recording without measured states
-//! does not determine the unknown. The reasons are tried in this order: refused samples, data that do not determine the
-//! unknown, an error that still falls, one that is constant.
+//! Out: a diagnostic if the samples contradict the observer's numbers, and one if an estimate of the model's observer has
+//! not settled, or if a recording without measured states does not determine the unknown. The reasons are tried in this
+//! order: refused samples, data that do not determine the unknown, then what innovation and expected error say of the
+//! error; of an observer of gains, which has neither, whether it still falls.
 
 use pebo_design::source::{Code, Diagnostic, Span, listed};
 
 use super::{EstimateScore, Summary, short};
 use crate::observe::excitation::Excitation;
 use crate::observe::setup::Estimator;
-use crate::score::SETTLED;
+use crate::score::{SETTLED, Score};
 use crate::timing::real;
 
 /// The share of refused samples that by itself explains an estimate that does not settle.
@@ -29,8 +30,46 @@ pub(crate) enum Origin<'a> {
     Recorded,
 }
 
-/// The advice on a run that did not converge; `where_said` is the section that describes it.
+/// The advice on a run; `where_said` is the section that describes it.
 pub(crate) fn advise(
+    summary: &Summary,
+    (estimator, origin): (&Estimator, Origin<'_>),
+    where_said: Span,
+) -> Vec<Diagnostic> {
+    let contradicted = summary.contradiction.map(|factor| contradicted(factor, origin, where_said));
+    let unsettled = not_converged(summary, (estimator, origin), where_said);
+    contradicted.into_iter().chain(unsettled).collect()
+}
+
+/// The advice on samples that contradict the observer's numbers by this factor.
+fn contradicted(factor: f64, origin: Origin<'_>, where_said: Span) -> Diagnostic {
+    let message = format!("innovations are {} times as large as the observer's numbers say", short(factor));
+    let diagnostic = Diagnostic::warning(Code::NumbersContradicted, where_said, message);
+    if factor < 1.0 {
+        return diagnostic
+            .help("lower `sensors` to what samples scatter by, and `disturbance` to what the model leaves out");
+    }
+    let others = match origin {
+        Origin::Simulated(departures, _) => {
+            departures.iter().copied().filter(|departure| *departure != "noise").collect()
+        }
+        Origin::Recorded => Vec::new(),
+    };
+    match (others.is_empty(), origin) {
+        // The plant is that of the model.
+        (true, Origin::Simulated(..)) => diagnostic.help("raise `sensors` to what samples scatter by"),
+        (true, Origin::Recorded) => diagnostic.help(
+            "raise `disturbance` by as much where the plant does more than its model says, or `sensors` where samples \
+             scatter more than that",
+        ),
+        (false, _) => diagnostic
+            .note(format!("the simulation has {}", listed(others.iter().copied())))
+            .help("raise `disturbance` by as much, where the plant does more than its model says"),
+    }
+}
+
+/// The advice on a run that did not converge.
+fn not_converged(
     summary: &Summary,
     (estimator, origin): (&Estimator, Origin<'_>),
     where_said: Span,
@@ -81,6 +120,8 @@ pub(crate) fn advise(
                 "if `{state}` is an angle, declare its period under `angles`: such an error is then none; if not, measure \
                  another output"
             ))
+    } else if summary.surprise.is_some() {
+        of_numbers(summary, slowest, origin, diagnostic)
     } else if trend < FALLING {
         diagnostic
             .note(format!(
@@ -90,27 +131,14 @@ pub(crate) fn advise(
             ))
             .help(faster)
     } else {
-        let note = format!(
-            "the error of `{}` hardly falls any more: its root mean square at the end is {}",
-            slowest.estimate.state,
-            short(slowest.score.rms)
-        );
-        match (origin, explained(slowest)) {
-            (Origin::Recorded, _) => diagnostic.note(note).help(
-                "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
-                 estimate; the sensor that it is compared with counts too",
-            ),
-            (Origin::Simulated(..), Some(expected)) => diagnostic
-                .note(format!(
-                    "{note}, no more than the {} that the observer expects of its sensors and disturbances",
-                    short(expected)
-                ))
-                .help("choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"),
-            (Origin::Simulated([], _), None) => {
+        let note = at_rest(slowest);
+        match origin {
+            Origin::Recorded => diagnostic.note(note).help(BENCH),
+            Origin::Simulated([], _) => {
                 let help = format!("{faster}; if the signals change much within one `step`, choose a shorter one");
                 diagnostic.note(note).help(help)
             }
-            (Origin::Simulated(departures @ [first, ..], state), None) => {
+            Origin::Simulated(departures @ [first, ..], state) => {
                 let note = format!("{note}, with {} in the simulation", listed(departures.iter().copied()));
                 let help = match state {
                     Some(state) if *first == "plant" => follow(state, (estimator, summary.known.is_some())),
@@ -122,9 +150,76 @@ pub(crate) fn advise(
     })
 }
 
-/// The standard error that the observer predicts, if the errors are no larger: then nothing else is wrong.
-fn explained(scored: &EstimateScore) -> Option<f64> {
-    scored.expected.filter(|expected| scored.score.rms <= *expected)
+/// The help for an error on a recording.
+const BENCH: &str = "compare parameters and offsets of sensors with those of the bench: what they err by stays in the \
+                     estimate; the sensor that it is compared with counts too";
+
+/// An error of at most so many standard errors is one that the observer expects.
+const WITHIN: f64 = 2.0;
+
+/// The error that an estimate keeps.
+fn at_rest(scored: &EstimateScore) -> String {
+    let (state, rms) = (&scored.estimate.state, short(scored.score.rms));
+    format!("the error of `{state}` hardly falls any more: its root mean square at the end is {rms}")
+}
+
+/// The advice on an observer that expects its samples and the errors of its estimates.
+fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, diagnostic: Diagnostic) -> Diagnostic {
+    let Score { rms, trend, .. } = slowest.score;
+    let note = match trend {
+        falling if falling < FALLING => {
+            format!(
+                "the error of `{}` still falls: its root mean square at the end is {}",
+                slowest.estimate.state,
+                short(rms)
+            )
+        }
+        _ => at_rest(slowest),
+    };
+    let (departures, state) = match origin {
+        Origin::Simulated(departures, state) => (departures, state),
+        Origin::Recorded => (&[][..], None),
+    };
+    // Noise is what the numbers are of.
+    let other = departures.iter().copied().find(|departure| *departure != "noise");
+    let mended = match (other, state) {
+        (Some("plant"), Some(state)) => format!(
+            "raise `disturbance` of `{state}` under `observer`, so that the observer follows where `{state}` moves; what \
+             moves all the time it follows with a lag"
+        ),
+        (Some(departure), _) => mend(departure, true).to_owned(),
+        (None, _) if matches!(origin, Origin::Recorded) => BENCH.to_owned(),
+        (None, _) => {
+            "begin nearer, by `extension` under `observer`, or choose a shorter `step` if signals change much within \
+                      one"
+            .to_owned()
+        }
+    };
+    let departed = match other {
+        Some(_) => format!(", with {} in the simulation", listed(departures.iter().copied())),
+        None => String::new(),
+    };
+    match (summary.contradiction, slowest.expected) {
+        (Some(_), _) if other.is_none() && matches!(origin, Origin::Simulated(..)) => {
+            diagnostic.note(note).help("mend the numbers of the observer first")
+        }
+        (Some(_), _) => diagnostic.note(note + &departed).help(mended),
+        (None, Some(expected)) if rms <= WITHIN * expected => {
+            let help = match trend < FALLING {
+                true => "simulate longer, or record more: the observer averages what its sensors err by",
+                false => {
+                    "choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"
+                }
+            };
+            diagnostic
+                .note(format!("{note}, and the observer expects {} of its sensors and disturbances", short(expected)))
+                .help(help)
+        }
+        (None, _) => diagnostic
+            .note(note + &departed)
+            .note("the innovations are as expected: the outputs do not show this error")
+            .help(mended),
+    }
 }
 
 /// The number of steps by which an estimate is off its state, and their length, where the outputs determine the state

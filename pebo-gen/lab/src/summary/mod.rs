@@ -38,6 +38,9 @@ pub struct Summary {
     /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right;
     /// none where the observer does not know its sensors.
     pub surprise: Option<f64>,
+    /// How many times as large innovations are as the observer's numbers say, where these are contradicted: then no
+    /// standard error is expected.
+    pub contradiction: Option<f64>,
     /// The certainty of estimates beside `wanted`; none where nothing is wanted.
     pub certainty: Option<Certainty>,
     /// The known numbers behind the settings of the model's observer; none where the author chose them.
@@ -90,6 +93,17 @@ impl Estimate {
     }
 }
 
+/// Beyond these, the normalised square of the innovation contradicts the numbers of an observer: what a factor of two in
+/// a standard deviation comes to, with some room.
+const CREDIBLE: std::ops::RangeInclusive<f64> = 0.2..=5.0;
+
+/// How many times as large innovations are as expected, if that contradicts the observer's numbers. Samples that scatter
+/// less do so only where they are real ones, or have noise: those of an ideal sensor are no measurement of it.
+pub(crate) fn contradiction(surprise: Option<f64>, is_noisy: bool) -> Option<f64> {
+    let square = surprise.filter(|square| !CREDIBLE.contains(square) && (is_noisy || *square > 1.0))?;
+    Some(square.sqrt())
+}
+
 impl Summary {
     /// The states whose estimates by the model's own observer did not settle.
     pub fn unsettled(&self) -> Vec<&EstimateScore> {
@@ -99,7 +113,8 @@ impl Summary {
 
     /// A table of the estimates, and a line each for excitation, faults and lost samples.
     pub fn text(&self) -> String {
-        let mut text = if self.estimates.is_empty() { String::new() } else { table(&self.rows()) };
+        let mut text: String = self.foremost().map(|line| line + "\n").unwrap_or_default();
+        text.push_str(&if self.estimates.is_empty() { String::new() } else { table(&self.rows()) });
         for line in self.lines() {
             text.extend([line.as_str(), "\n"]);
         }
@@ -128,6 +143,15 @@ impl Summary {
             }
         }
         rows
+    }
+
+    /// What is to be known before the table is read.
+    pub fn foremost(&self) -> Option<String> {
+        let factor = short(self.contradiction?);
+        Some(format!(
+            "innovations: {factor} times as large as the numbers of the observer say, which do not fit these samples; no \
+             standard error is expected"
+        ))
     }
 
     /// The lines below the table.

@@ -105,7 +105,7 @@ fn bounds_that_exclude_the_truth_are_reported_and_leave_the_standard_error() {
     let scenario = resolve(&text, &Overrides::default()).unwrap();
     let trace = scenario.run().unwrap();
     let (summary, free) = (trace.summary(), run(FORCE, &Overrides::default()));
-    let advice = scenario.advise(summary).unwrap();
+    let advice = scenario.advise(summary).pop().unwrap();
     assert!(advice.notes[0].contains("`F` itself is beyond the bounds of `within`"), "{advice:?}");
     assert!(summary.estimates[0].outside && !free.summary().estimates[0].outside);
     // An estimate that is moved to a bound is known no better: over the last tenth, as it never settles.
@@ -120,7 +120,7 @@ fn a_state_that_moves_is_followed_by_a_disturbance() {
     let text = with(&text, "disturbance: {F: 0.1}", "disturbance: {F: 0.001}");
     let scenario = resolve(&text, &Overrides::default()).unwrap();
     let trace = scenario.run().unwrap();
-    let help = scenario.advise(trace.summary()).unwrap().help.unwrap();
+    let help = scenario.advise(trace.summary()).pop().unwrap().help.unwrap();
     assert!(help.contains("raise `disturbance` of `F`") && !help.contains("parameter"), "{help}");
     // And so it is: of 2.1 rms a twentieth is lag, behind (3/(0.001^2*0.01)^(1/2))^(1/2) rad/s, and an eighth noise.
     let rms = |text: &str| run(text, &Overrides::default()).summary().estimates[0].score.rms;
@@ -166,4 +166,48 @@ simulation: {duration: 2, step: 0.01, initial: {a: 1, s: 1}}
     // A state that rests at the border of `>=` is not outside.
     let still = run(&with(text, "initial: {a: 1, s: 1}", "initial: {a: 0, s: 1}"), &Overrides::default());
     assert!(still.summary().outside.is_empty(), "{:?}", still.summary().outside);
+}
+
+#[test]
+fn advice_follows_from_innovation_and_expected_error() {
+    let advice = |numbers: &str, more: &str| {
+        let (plant, simulation) =
+            (SPRING.split("observer:").next().unwrap(), SPRING.split("simulation:").nth(1).unwrap());
+        let text = format!(
+            "{plant}observer: {{{numbers}}}\nsimulation:{}",
+            simulation.replace("q: 1}", &format!("q: 1}}{more}"))
+        );
+        let scenario = resolve(&text, &Overrides::default()).unwrap();
+        let trace = scenario.run().unwrap();
+        let said: Vec<String> = scenario
+            .advise(trace.summary())
+            .into_iter()
+            .map(|found| {
+                format!("{}: {} | {}", found.code.name(), found.notes.join("; "), found.help.unwrap_or_default())
+            })
+            .collect();
+        (said, trace.summary().clone())
+    };
+    let numbers = "sensors: {q: 0.1}, start: {v: 1}, disturbance: {v: 0.1}";
+    // As noisy as the observer was told: only better sensors help.
+    let (said, summary) = advice(numbers, ", noise: {q: 0.1}");
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("the observer expects") && said[0].contains("a better sensor"), "{said:?}");
+    assert!(summary.contradiction.is_none() && summary.estimates[0].expected.is_some());
+    // A hundred times as noisy: the numbers are wrong, and nothing is expected.
+    let (said, summary) = advice(&numbers.replace("q: 0.1", "q: 0.001"), ", noise: {q: 0.1}");
+    assert!(said[0].starts_with("numbers-contradicted:") && said[0].contains("raise `sensors`"), "{said:?}");
+    assert!(said[1].contains("mend the numbers of the observer first"), "{said:?}");
+    assert!(summary.text().starts_with("innovations: ") && summary.estimates[0].expected.is_none());
+    // Ten times less noisy than told.
+    let (said, _) = advice(numbers, ", noise: {q: 0.01}");
+    assert!(said[0].contains("lower `sensors`"), "{said:?}");
+    // Another spring: the plant does more than the model says.
+    let (said, _) =
+        advice("sensors: {q: 0.001}, start: {v: 1}, disturbance: {v: 0}", ", noise: {q: 0.001}, plant: {k: 5}");
+    assert!(said[0].contains("the simulation has `plant`") && said[0].contains("raise `disturbance`"), "{said:?}");
+    assert!(said[1].contains("measure the parameter that differs"), "{said:?}");
+    // Samples without noise contradict nothing.
+    let (said, summary) = advice("sensors: {q: 0.1}, start: {v: 1}, disturbance: {v: 0}", "");
+    assert!(said.is_empty() && summary.contradiction.is_none(), "{said:?}");
 }

@@ -240,7 +240,7 @@ fn an_estimate_a_turn_away_is_reported() {
     let advice = |text: &str| {
         let scenario = resolve(text, &Overrides::default()).unwrap();
         let trace = scenario.run().unwrap();
-        scenario.advise(trace.summary()).map(|found| (found.notes.join("\n"), found.help.unwrap_or_default()))
+        scenario.advise(trace.summary()).pop().map(|found| (found.notes.join("\n"), found.help.unwrap_or_default()))
     };
     let (note, help) = advice(rotor).expect("it is no angle");
     assert_eq!(note, "the estimate of `q` is one step of 6.28 off, which the outputs do not show");

@@ -78,7 +78,7 @@ fn a_recording_on_which_nothing_settles_says_why() {
         let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
         let replay = resolve(model, &log).expect("the columns have a meaning");
         let replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
-        replay.advise(&replayed).map(|found| (found.notes.concat(), found.help.unwrap_or_default()))
+        replay.advise(&replayed).pop().map(|found| (found.notes.concat(), found.help.unwrap_or_default()))
     };
     // Moved at 1 m/s; the sensor of the momentum shows 10 % more.
     let rows = |momentum: f64| {
