@@ -13,7 +13,7 @@ use pebo_design::search::{self, SearchVerdict};
 #[cfg(feature = "yaml")]
 use pebo_design::source::Source;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
-use pebo_lab::settings::DerivedSettings;
+use pebo_lab::settings::{DerivedSettings, Shown};
 
 /// A model with its plant and its derivation.
 #[derive(Debug)]
@@ -137,7 +137,7 @@ impl Derived {
     /// reports missing ones.
     fn settings(&self) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
         let mut problems = Diagnostics::default();
-        let tuned = DerivedSettings::of(&self.model, &self.plant, &self.derivation, None, &mut problems);
+        let tuned = DerivedSettings::of(&self.model, &self.plant, &self.derivation, &Shown::default(), &mut problems);
         let settings = tuned.map(|tuned| tuned.settings);
         (settings.filter(|_| !problems.has_errors()), problems.into_vec())
     }
@@ -193,7 +193,10 @@ impl Derived {
 
     /// The observer of the model, ready to be run over recorded data with these columns.
     #[cfg(feature = "simulate")]
-    pub fn replay(&self, log: &pebo_lab::recording::Log<'_>) -> Result<pebo_lab::recording::Replay, Vec<Diagnostic>> {
+    pub fn replay(
+        &self,
+        log: &mut pebo_lab::recording::Log<'_>,
+    ) -> Result<pebo_lab::recording::Replay, Vec<Diagnostic>> {
         pebo_lab::recording::Replay::resolve(&self.model, &self.plant, &self.derivation, log)
     }
 }

@@ -75,7 +75,7 @@ fn run(
 ) -> Result<(Replayed, Vec<Diagnostic>), (Standing, Vec<Diagnostic>)> {
     let unreadable = |found: Unreadable| (Standing::Malformed, vec![found.explain(tape.name)]);
     let mut log = Log::open(tape.name, tape.recording).map_err(unreadable)?;
-    let replay = derived.replay(&log).map_err(|found| (Standing::Malformed, found))?;
+    let replay = derived.replay(&mut log).map_err(|found| (Standing::Malformed, found))?;
     let mut watch = |rows, bytes| match &request.watch {
         Some(watch) => watch(Stage::Replay { rows, bytes }),
         None => ControlFlow::Continue(()),

@@ -22,7 +22,7 @@ fn row(text: &str) -> Result<String, Vec<Diagnostic>> {
         format!("{} {at}", rated.estimate.state)
     });
     let settled = settled.collect::<Vec<_>>().join(", ");
-    let reason = scenario.advise(summary).map(|diagnostic| diagnostic.notes.join("; "));
+    let reason = scenario.advise(summary).pop().map(|diagnostic| diagnostic.notes.join("; "));
     let verdict = reason.map_or_else(|| "converged".to_owned(), |reason| format!("not converged: {reason}"));
     Ok(format!("{observer} | {settled} | {verdict}"))
 }

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::settings::start as start_of_extension;
+use crate::settings::{Shown, start as start_of_extension};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::Derivation;
 use pebo_design::model::{Model, Simulation};
@@ -189,7 +189,7 @@ fn restart(names: &Names, derivation: &Derivation) -> String {
     let plant = names.plant;
     let phi: Vec<String> = plant.phi.iter().map(|phi| plant.arena.print(phi.expr)).collect();
     let whose = format!("phi = [{}] of a state that the plant can have", phi.join(", "));
-    match start_of_extension(names.model, plant, derivation) {
+    match start_of_extension(names.model, plant, derivation, &Shown::default()) {
         Some(z) => {
             let z: Vec<String> = z.iter().map(|value| value.to_f64().to_string()).collect();
             format!("choose another start for the extension, as `observer: {{extension: [{}]}}`: {whose}", z.join(", "))
@@ -221,7 +221,8 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design = Design::resolve(&names.request(), derivation, &numbers, overrides.step, problems);
+        let design =
+            Design::resolve(&names.request(), derivation, &numbers, &Shown::of_period(overrides.step), problems);
 
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);

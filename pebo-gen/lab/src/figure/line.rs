@@ -45,7 +45,7 @@ pub(super) fn within(points: &[(f64, f64)], [top, bottom]: [f64; 2]) -> Vec<Vec<
         let (from, to) = (pair[0], pair[1]);
         let crossing = |height: f64| {
             let share = (height - from.1) / (to.1 - from.1);
-            (0.0..=1.0).contains(&share).then(|| (share, (from.0 + share * (to.0 - from.0), height)))
+            (0.0..=1.0).contains(&share).then_some((share, (from.0 + share * (to.0 - from.0), height)))
         };
         if !is_inside(&from) || !is_inside(&to) {
             let mut crossings: Vec<_> = [top, bottom].into_iter().filter_map(crossing).collect();
@@ -69,8 +69,8 @@ mod tests {
     #[test]
     fn a_line_ends_where_it_leaves_the_frame() {
         let frame = [0.0, 10.0];
-        let inside = vec![(0.0, 1.0), (1.0, 9.0)];
-        assert_eq!(within(&inside, frame), [inside.clone()]);
+        let inside = [(0.0, 1.0), (1.0, 9.0)];
+        assert_eq!(within(&inside, frame), [inside]);
         // Out above, through below and back.
         assert_eq!(
             within(&[(0.0, 5.0), (1.0, -5.0), (2.0, 15.0), (3.0, 5.0)], frame),

@@ -13,7 +13,7 @@ use super::setup::Settings;
 use super::sizes::LARGEST;
 use crate::score::SETTLED;
 use crate::score::faults::SignalNames;
-use crate::settings::Prediction;
+use crate::settings::{Prediction, Shown};
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -71,7 +71,7 @@ impl Design {
         request: &Request,
         derivation: &Derivation,
         numbers: &BTreeMap<Symbol, Expr>,
-        period: Option<f64>,
+        shown: &Shown,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let plant = request.plant;
@@ -79,7 +79,7 @@ impl Design {
         let cascade = derivation.cascade.result.as_ref()?;
         let inverse = derivation.left_inverse.result.as_ref()?;
         let regression = derivation.regression.result.as_ref()?;
-        let settings = Settings::resolve(request, derivation, (regression, inverse), period, problems)?;
+        let settings = Settings::resolve(request, derivation, (regression, inverse), shown, problems)?;
         let arena = &plant.arena;
         let regression = &regression.computed(arena, settings.output || settings.gate.is_some());
         let mut compile = |inputs: &[&[Symbol]], outputs: &[Expr]| {

@@ -129,6 +129,11 @@ impl ObserverDriver {
         (self.surprise.1 > 0).then(|| self.surprise.0 / crate::timing::real(self.surprise.1))
     }
 
+    /// The number of innovations behind that.
+    pub(crate) fn judged(&self) -> u64 {
+        self.surprise.1
+    }
+
     /// The standard errors of the estimates now, some time after the last accepted sample.
     pub(crate) fn standard_errors(&self) -> Option<Vec<f64>> {
         let age = self.gap.map_or(0.0, |mut gap| gap.take().1);

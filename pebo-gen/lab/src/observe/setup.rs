@@ -2,7 +2,7 @@
 
 use pebo_runtime::{Drift, Hold};
 
-use crate::settings::{DerivedSettings, KnownNumbers, Prediction, start};
+use crate::settings::{DerivedSettings, KnownNumbers, Prediction, Shown, start};
 use pebo_cas::Rational;
 use pebo_design::analysis::{Derivation, LeftInverse, Regression};
 use pebo_design::model::{self, Decimal, Observer};
@@ -94,13 +94,13 @@ impl Settings {
         request: &Request,
         derivation: &Derivation,
         (regression, inverse): (&Regression, &LeftInverse),
-        period: Option<f64>,
+        shown: &Shown,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let (unknowns, states) = (regression.eta.len(), inverse.x.len());
         let written = &request.model.observer;
         if !written.has_gains() {
-            return Self::of_known(request, (derivation, states), period, problems);
+            return Self::of_known(request, (derivation, states), shown, problems);
         }
         let mut section = Section { request, written, problems };
         section.operator();
@@ -112,7 +112,8 @@ impl Settings {
         if mixes && unknowns > MOST_MIXED {
             return None;
         }
-        let begun = if written.extension.is_empty() { start(request.model, request.plant, derivation) } else { None };
+        let begun =
+            if written.extension.is_empty() { start(request.model, request.plant, derivation, shown) } else { None };
         let begun = begun.map(|z| z.iter().map(Rational::to_f64).collect());
         Some(Self {
             operator: match resolved.operator {
@@ -142,11 +143,11 @@ impl Settings {
     fn of_known(
         request: &Request,
         (derivation, states): (&Derivation, usize),
-        period: Option<f64>,
+        shown: &Shown,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let before = problems.has_errors();
-        let Some(derived) = DerivedSettings::of(request.model, request.plant, derivation, period, problems) else {
+        let Some(derived) = DerivedSettings::of(request.model, request.plant, derivation, shown, problems) else {
             if before || !problems.has_errors() {
                 let message = format!("{} needs the observer's numbers", request.who);
                 problems.push(Diagnostic::error(Code::SimulationIncomplete, request.section, message).help(

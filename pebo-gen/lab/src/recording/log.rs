@@ -6,7 +6,7 @@
 //! the header is skipped. No more than a row is held.
 
 use std::fmt;
-use std::io::{BufRead as _, BufReader, Read};
+use std::io::{BufRead as _, BufReader, Cursor, Read};
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -86,6 +86,10 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
+    fn empty() -> Self {
+        Self { bytes: BufReader::new(Box::new(std::io::empty())), line: Vec::new(), number: 1, read: 0 }
+    }
+
     /// Reads a line; false at the end.
     fn advance(&mut self) -> Result<bool, Unreadable> {
         loop {
@@ -239,6 +243,33 @@ impl<'a> Log<'a> {
     /// The bytes that have been read.
     pub fn bytes(&self) -> u64 {
         self.lines.read
+    }
+
+    /// The first rows, as many as are there up to `most`, which are read again afterwards: the numbers of the `wanted`
+    /// columns, NaN for cells without one. A row that cannot be read ends them.
+    pub(super) fn head(&mut self, wanted: &[usize], most: usize) -> std::io::Result<Vec<Vec<f64>>> {
+        let mut text = Vec::new();
+        for _ in 0..most {
+            let limit = u64::try_from(LONGEST).unwrap_or(u64::MAX);
+            if text.len() > LONGEST || self.lines.bytes.by_ref().take(limit).read_until(b'\n', &mut text)? == 0 {
+                break;
+            }
+        }
+        let nothing: Box<dyn Read + 'a> = Box::new(std::io::empty());
+        let rest = std::mem::replace(&mut self.lines.bytes, BufReader::new(nothing));
+        let mut lines = Lines { bytes: BufReader::new(Box::new(Cursor::new(text.clone()))), ..Lines::empty() };
+        let again: Box<dyn Read + 'a> = Box::new(Cursor::new(text).chain(rest));
+        self.lines.bytes = BufReader::with_capacity(BUFFER, again);
+        std::mem::swap(&mut self.lines, &mut lines);
+        let (first, has_begun) = (self.values.first.clone(), self.has_begun);
+        let mut rows = Vec::new();
+        let mut numbers = vec![f64::NAN; wanted.len()];
+        while let Ok(Next::Row(_)) = self.next(wanted, &mut numbers, |_, _, _| {}) {
+            rows.push(numbers.clone());
+        }
+        std::mem::swap(&mut self.lines, &mut lines);
+        (self.values.first, self.has_begun) = (first, has_begun);
+        Ok(rows)
     }
 
     /// Reads a row: the numbers of the `wanted` columns, NaN for blank cells, each of which is passed to `blank`.

@@ -201,7 +201,7 @@ impl<'a> Piece<'a> {
             self.table[self.replay.layout.hat.clone()].fill(f64::NAN);
             self.errors.1.fill(f64::NAN);
         }
-        if self.rows % GLANCES == 0 {
+        if self.rows.is_multiple_of(GLANCES) {
             self.look();
         }
         (Placed::At(t), held)
@@ -299,7 +299,7 @@ impl<'a> Piece<'a> {
         self.look();
         let Replay { names, residuals, design, scored, measured, .. } = self.replay;
         let surprise = self.driver.surprise();
-        let contradiction = contradiction(surprise, true);
+        let contradiction = contradiction(surprise, self.driver.judged(), true);
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = measured.get(place).filter(|_| contradiction.is_none());

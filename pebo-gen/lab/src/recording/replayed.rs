@@ -45,8 +45,9 @@ impl Replayed {
     pub fn text(&self) -> String {
         let Self { rows, scored, start, summary, residuals, left_out, faults, .. } = self;
         let mut text = if scored == rows { format!("{rows} rows") } else { format!("{scored} of {rows} rows,") };
-        text.push_str(&format!(" from t = {start} s to {} s", start + summary.end));
-        text.push_str(if *start == 0.0 { "\n" } else { ", from the first of which times count\n" });
+        let counted = if *start == 0.0 { "" } else { ", from the first of which times count" };
+        let place = format!(" from t = {start} s to {} s{counted}\n", start + summary.end);
+        text.push_str(&place);
         text.push_str(&summary.text());
         let residual = |OutputResidual { output, unit, score }: &OutputResidual| {
             let unit = unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));

@@ -69,7 +69,12 @@ impl Replay {
     /// Resolves the sections of a model for a log with these columns.
     ///
     /// The errors are those of the derivation where it is not accepted.
-    pub fn resolve(model: &Model, plant: &Plant, derivation: &Derivation, log: &Log) -> Result<Self, Vec<Diagnostic>> {
+    pub fn resolve(
+        model: &Model,
+        plant: &Plant,
+        derivation: &Derivation,
+        log: &mut Log,
+    ) -> Result<Self, Vec<Diagnostic>> {
         derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
         let section = model.recording.as_ref().and_then(Recording::span).unwrap_or(model.name.span);
         let request = Request { model, plant, section, who: "the replay" };
@@ -90,12 +95,12 @@ impl Replay {
     }
 }
 
-fn replay(request: &Request, derivation: &Derivation, log: &Log, problems: &mut Diagnostics) -> Option<Replay> {
+fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &mut Diagnostics) -> Option<Replay> {
     let (plant, arena, span) = (request.plant, &request.plant.arena, request.section);
     let numbers = request.numbers();
     let signals = Signals::resolve(request, log, problems);
-    let period = signals.as_ref().and_then(|signals| signals.period).map(|(above, below)| above / below);
-    let design = Design::resolve(request, derivation, &numbers, period, problems);
+    let shown = signals.as_ref().map(|signals| signals.shown(plant, log)).unwrap_or_default();
+    let design = Design::resolve(request, derivation, &numbers, &shown, problems);
     let (signals, design) = (signals?, design?);
     let (baselines, left_out) = baselines(request, problems);
     let (named, resolved): (Vec<&str>, Vec<NamedBaseline>) = baselines.into_iter().unzip();

@@ -7,11 +7,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::observe::design::program;
 use crate::observe::request::Request;
+use crate::settings::Shown;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};
 use pebo_design::model::{Entry, Recording, unknown_name};
-use pebo_design::plant::{Scope, lower};
-use pebo_design::program::Program;
+use pebo_design::plant::{Plant, Scope, lower};
+use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 
 use super::log::Log;
@@ -61,6 +62,31 @@ impl Signals {
         let of_outputs = symbols.iter().map(|symbol| !others.contains(symbol)).collect();
         let program = problems.keep(program(arena, &symbols, &formulas, request.section))?;
         Some(Self { wanted, program, period, measured, of_outputs })
+    }
+}
+
+/// The rows of which is asked what they show: enough for a median, and no long wait where they come one by one.
+const HEAD: usize = 256;
+
+impl Signals {
+    /// What the first rows show of the plant; nothing where they cannot be read, which the run will report.
+    pub(super) fn shown(&self, plant: &Plant, log: &mut Log) -> Shown {
+        let rows = log.head(&self.wanted, HEAD).unwrap_or_default();
+        let mut interpreter = Interpreter::new(&self.program);
+        let mut values = vec![0.0; self.program.outputs.len()];
+        let signals = self.measured.iter().map(|state| plant.x[*state].symbol);
+        let outputs: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
+        let signals: Vec<Symbol> = signals.chain(outputs.iter().copied()).chain(plant.commanded()).collect();
+        let timed = usize::from(self.period.is_none());
+        let (mut times, mut samples): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), vec![Vec::new(); signals.len()]);
+        for row in &rows {
+            interpreter.run(row, &mut values);
+            times.extend(values[..timed].first());
+            samples.iter_mut().zip(&values[timed..]).for_each(|(samples, value)| samples.push(*value));
+        }
+        let samples: Vec<(Symbol, Vec<f64>)> = signals.into_iter().zip(samples).collect();
+        let period = self.period.map(|(above, below)| above / below);
+        Shown::by_samples((&times, period), &samples, &outputs)
     }
 }
 

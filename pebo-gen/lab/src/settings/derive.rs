@@ -22,6 +22,7 @@ use super::magnitude::Deviations;
 use super::point::Point;
 #[cfg(feature = "simulate")]
 use super::prediction::{Noise, Prediction};
+use super::shown::Shown;
 use super::spread::Slopes;
 use super::start::beginning;
 #[cfg(feature = "simulate")]
@@ -42,7 +43,7 @@ pub(super) fn derive(
     model: &Model,
     plant: &Plant,
     derivation: &Derivation,
-    period: Option<f64>,
+    shown: &Shown,
     problems: &mut Diagnostics,
 ) -> Option<DerivedSettings> {
     let can_rebase = derivation.can_rebase(plant);
@@ -52,10 +53,9 @@ pub(super) fn derive(
         return None;
     }
     let frame = frame(model, plant, derivation, problems)?;
-    let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
-    let period = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0).or(period);
+    let period = shown.period_beside(model);
     let formulas = Formulas::of(plant, derivation, kind, frame.gate.is_some())?;
-    let known = Point::of(model, plant);
+    let known = Point::of(model, plant, shown);
     let asked = model.observer.known();
     if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
         // Without known numbers in the section there is no observer either, and no complaint.
@@ -69,7 +69,7 @@ pub(super) fn derive(
         None => beginning(&known, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
     let point = completed(&known, plant, &formulas, &start)?;
-    let deviations = Deviations::of(model, plant, &known, period)?;
+    let deviations = Deviations::of(model, plant, &known, (shown, period))?;
 
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, sensed } = coordinates;
@@ -78,7 +78,7 @@ pub(super) fn derive(
     #[cfg(feature = "simulate")]
     let known = {
         let noise: Vec<f64> = drift.iter().zip(&sensed).map(|(drift, sensed)| drift + sensed).collect();
-        KnownNumbers::new(plant, model, &deviations, (kind, can_rebase, adapts), [&covariance, &noise])
+        KnownNumbers::new(plant, (model, shown), &deviations, (kind, can_rebase, adapts), [&covariance, &noise])
     };
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;

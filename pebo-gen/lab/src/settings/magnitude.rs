@@ -8,6 +8,7 @@ use pebo_design::model::{Decimal, Entry, Model, Spanned};
 use pebo_design::plant::{Plant, State};
 
 use super::point::Point;
+use super::shown::Shown;
 
 /// The error of a sensor, as a share of its value at the start.
 const SENSOR: f64 = 1e-3;
@@ -27,7 +28,7 @@ const DRIFT: f64 = 0.02;
 const RATE: f64 = 0.01;
 
 /// An unknown order of magnitude: 1 of its unit.
-const UNIT: f64 = 1.0;
+pub(super) const UNIT: f64 = 1.0;
 
 /// Standard deviations in the order of the plant's states and outputs, written or assumed.
 #[derive(Clone, Debug)]
@@ -45,8 +46,14 @@ pub(super) struct Deviations {
 }
 
 impl Deviations {
-    /// The deviations of the model, and assumed ones in place of the rest; `period` is that of the samples.
-    pub(super) fn of(model: &Model, plant: &Plant, point: &Point, period: Option<f64>) -> Option<Self> {
+    /// The deviations of the model, those that samples show, and assumed ones in place of the rest; `period` is that of
+    /// the samples.
+    pub(super) fn of(
+        model: &Model,
+        plant: &Plant,
+        point: &Point,
+        (shown, period): (&Shown, Option<f64>),
+    ) -> Option<Self> {
         let arena = &plant.arena;
         let written = &model.observer;
         let silent = [&written.sensors, &written.start, &written.disturbance].iter().all(|entries| entries.is_empty());
@@ -67,7 +74,8 @@ impl Deviations {
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let sensor = |symbol: &Symbol| {
             let assumed = || SENSOR * magnitude(*symbol);
-            of(&written.sensors, *symbol).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
+            let recorded = || shown.deviations.get(symbol).copied();
+            of(&written.sensors, *symbol).or_else(recorded).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
         };
         let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| START * magnitude(*symbol));
         let drift = |state: &State| match of(&written.disturbance, state.symbol) {

@@ -24,6 +24,7 @@ mod magnitude;
 mod point;
 #[cfg(feature = "simulate")]
 mod prediction;
+mod shown;
 mod spread;
 mod start;
 
@@ -38,6 +39,7 @@ use pebo_design::plant::{Plant, Settings};
 use pebo_design::source::Diagnostics;
 
 pub use derived::DerivedSettings;
+pub use shown::Shown;
 pub(crate) use start::start;
 
 #[cfg(feature = "simulate")]
@@ -48,13 +50,13 @@ pub(crate) use prediction::Prediction;
 pub use words::{KnownNumbers, Numbers, Value};
 
 impl DerivedSettings {
-    /// The settings of a model's observer; none where the model is incomplete. Mistakes in it are reported. `period` is
-    /// that of the samples in seconds, where the model has none.
+    /// The settings of a model's observer, with what samples show besides; none where the model is incomplete. Mistakes in
+    /// it are reported.
     pub fn of(
         model: &Model,
         plant: &Plant,
         derivation: &Derivation,
-        period: Option<f64>,
+        shown: &Shown,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let inverse = derivation.left_inverse.result.as_ref()?;
@@ -69,7 +71,7 @@ impl DerivedSettings {
             let sizes = (regression.eta.len(), plant.phi.len(), inverse.x.len());
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
             let begun = Some(()).filter(|()| model.observer.extension.is_empty());
-            let chi_0 = begun.and_then(|()| start(model, plant, derivation)).unwrap_or(settings.chi_0);
+            let chi_0 = begun.and_then(|()| start(model, plant, derivation, shown)).unwrap_or(settings.chi_0);
             return Some(Self {
                 settings: Settings { chi_0, limits, ..settings },
                 #[cfg(feature = "simulate")]
@@ -78,7 +80,7 @@ impl DerivedSettings {
                 prediction: Prediction::None("gains do not say what sensors err by"),
             });
         }
-        let mut derived = derive::derive(model, plant, derivation, period, problems)?;
+        let mut derived = derive::derive(model, plant, derivation, shown, problems)?;
         derived.settings.limits = limits;
         Some(derived)
     }

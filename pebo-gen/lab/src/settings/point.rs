@@ -10,6 +10,9 @@ use pebo_design::model::{Entry, Formula, Model, Piece};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::program::{self, Interpreter};
 
+use super::magnitude::UNIT;
+use super::shown::Shown;
+
 /// Numbers for symbols.
 #[derive(Clone, Debug)]
 pub(super) struct Point<'a> {
@@ -18,8 +21,21 @@ pub(super) struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    /// The model's start of the plant; a formula that has no value there is left out.
-    pub(super) fn of(model: &Model, plant: &'a Plant) -> Self {
+    /// The start of the plant: the first samples, and besides what the model says; a formula that has no value there is
+    /// left out.
+    pub(super) fn of(model: &Model, plant: &'a Plant, shown: &Shown) -> Self {
+        let mut point = Self::of_model(model, plant);
+        point.values.extend(&shown.first);
+        if shown.is_recorded {
+            // Nobody says where the plant of a recording started: a state has the order of magnitude of its unit.
+            for state in &plant.x {
+                point.values.entry(state.symbol).or_insert(UNIT);
+            }
+        }
+        point
+    }
+
+    fn of_model(model: &Model, plant: &'a Plant) -> Self {
         let arena = &plant.arena;
         let given = plant.parameters.iter().filter_map(|p| Some((p.symbol, p.value.as_ref()?.to_f64())));
         let mut point = Self { plant, values: given.collect() };

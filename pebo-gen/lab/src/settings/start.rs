@@ -11,6 +11,7 @@ use pebo_design::plant::Plant;
 
 use super::digits::rounded;
 use super::point::Point;
+use super::shown::Shown;
 
 /// Shares of the plant's start to try for the extension, in this order: the start itself last, as the observer is to
 /// find it.
@@ -23,8 +24,8 @@ const MOST_SIGNS: usize = 6;
 const ANY: f64 = 1.0;
 
 /// The default extension at the start; none where no point was found at which the left inverse has a value.
-pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
-    beginning(&Point::of(model, plant), plant, derivation)
+pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation, shown: &Shown) -> Option<Vec<Rational>> {
+    beginning(&Point::of(model, plant, shown), plant, derivation)
 }
 
 /// The same for a plant that starts at a known point.

@@ -33,7 +33,7 @@ fn derived(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
     let plant = Plant::resolve(&model).unwrap();
     let derivation = Derivation::derive(&plant);
     let mut problems = Diagnostics::new();
-    let derived = DerivedSettings::of(&model, &plant, &derivation, None, &mut problems);
+    let derived = DerivedSettings::of(&model, &plant, &derivation, &super::Shown::default(), &mut problems);
     (derived.map(|derived| derived.settings), problems.into_vec())
 }
 

@@ -8,6 +8,7 @@ use pebo_design::plant::Plant;
 use super::kind::ObserverKind;
 use super::magnitude::Deviations;
 use super::prediction::Prediction;
+use super::shown::Shown;
 
 /// The known numbers of sensors, start and disturbances, with the derived ones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,6 +28,8 @@ pub struct Numbers {
     pub what: String,
     /// True if they are assumed, not written by the author.
     pub assumed: bool,
+    /// True if they are those that the first rows of a recording show.
+    pub recorded: bool,
     /// Names and values, with units.
     pub values: Vec<Value>,
 }
@@ -43,9 +46,12 @@ pub struct Value {
 }
 
 impl KnownNumbers {
+    /// The kind of the states' disturbances.
+    pub(crate) const DISTURBANCE: &str = "disturbance";
+
     pub(super) fn new(
         plant: &Plant,
-        model: &Model,
+        (model, shown): (&Model, &Shown),
         deviations: &Deviations,
         (kind, rebased, adapts): (ObserverKind, bool, bool),
         [covariance, noise]: [&[f64]; 2],
@@ -76,7 +82,10 @@ impl KnownNumbers {
         let root = " per root second";
         let mut drifts = named(&x, &deviations.disturbance, root);
         drifts.extend(named(&y, &deviations.of_outputs, root).into_iter().filter(|drift| drift.value > 0.0));
-        let numbers = |what: &str, assumed, values| Numbers { what: what.to_owned(), assumed, values };
+        let numbers = |what: &str, assumed, values| Numbers { what: what.to_owned(), assumed, recorded: false, values };
+        let are_assumed = lacks(&y, &written.sensors);
+        // A sensor that shows nothing of its noise has an assumed one.
+        let are_shown = are_assumed && y.iter().all(|output| shown.deviations.contains_key(output));
         let observer = match (kind, rebased) {
             (ObserverKind::Output, _) => "output form, a Kalman filter of the transformed plant",
             (ObserverKind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
@@ -91,9 +100,12 @@ impl KnownNumbers {
                 observer.to_owned()
             },
             numbers: vec![
-                numbers("sensors", lacks(&y, &written.sensors), named(&y, &deviations.sensors, "")),
+                Numbers {
+                    recorded: are_shown,
+                    ..numbers("sensors", are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
+                },
                 numbers("start", lacks(&x, &written.start), named(&x, &deviations.start, "")),
-                numbers("disturbance", silent, drifts),
+                numbers(Self::DISTURBANCE, silent, drifts),
                 numbers("covariance", false, coordinates(covariance)),
                 numbers("process noise", false, coordinates(noise)),
             ],

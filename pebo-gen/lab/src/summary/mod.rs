@@ -97,11 +97,18 @@ impl Estimate {
 /// a standard deviation comes to, with some room.
 const CREDIBLE: std::ops::RangeInclusive<f64> = 0.2..=5.0;
 
-/// How many times as large innovations are as expected, if that contradicts the observer's numbers. Samples that scatter
-/// less do so only where they are real ones, or have noise: those of an ideal sensor are no measurement of it.
-pub(crate) fn contradiction(surprise: Option<f64>, is_noisy: bool) -> Option<f64> {
-    let square = surprise.filter(|square| !CREDIBLE.contains(square) && (is_noisy || *square > 1.0))?;
-    Some(square.sqrt())
+/// The mean square of so many innovations is below or above these by chance in one of ten thousand runs at most.
+const ENOUGH: [u64; 2] = [20, 10];
+
+/// How many times as large innovations are as expected, if that contradicts the observer's numbers: the normalised square,
+/// the mean of so many. Samples that scatter less do so only where they are real ones, or have noise: those of an ideal
+/// sensor are no measurement of it.
+pub(crate) fn contradiction(surprise: Option<f64>, count: u64, is_noisy: bool) -> Option<f64> {
+    let contradicts = |square: &f64| {
+        let is_above = *square > 1.0;
+        !CREDIBLE.contains(square) && (is_noisy || is_above) && count >= ENOUGH[usize::from(is_above)]
+    };
+    Some(surprise.filter(contradicts)?.sqrt())
 }
 
 impl Summary {
@@ -220,13 +227,18 @@ impl Summary {
         }
         if let Some(known) = &self.known {
             line("observer", &known.observer);
-            for Numbers { what, assumed, values } in &known.numbers {
+            for Numbers { what, assumed, recorded, values } in &known.numbers {
                 let value = |value: &Value| {
                     let unit = value.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
                     format!("{} {}{unit}", value.name, short(value.value))
                 };
                 let values = values.iter().map(value).collect::<Vec<_>>().join(", ");
-                line(&format!("  {what}"), &(values + if *assumed { " (assumed)" } else { "" }));
+                let origin = match (assumed, recorded) {
+                    (true, _) => " (assumed)",
+                    (false, true) => " (as the first rows show)",
+                    (false, false) => "",
+                };
+                line(&format!("  {what}"), &(values + origin));
             }
         }
         lines

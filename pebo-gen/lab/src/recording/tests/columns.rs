@@ -8,8 +8,8 @@ fn columns(header: &str) -> Vec<String> {
 
 /// Code, message, first note and help of the complaint about the section for this header.
 fn said(recording: &str, header: &str) -> Vec<String> {
-    let log = Log::open("log.csv", header.as_bytes()).expect("a header");
-    let found = resolve(&format!("{CART}{recording}\n"), &log).expect_err("something is wrong");
+    let mut log = Log::open("log.csv", header.as_bytes()).expect("a header");
+    let found = resolve(&format!("{CART}{recording}\n"), &mut log).expect_err("something is wrong");
     let line = |diagnostic: &pebo_design::source::Diagnostic| {
         let help = diagnostic.help.as_deref().unwrap_or_default();
         format!("{}: {} | {} | {help}", diagnostic.code.name(), diagnostic.message, diagnostic.notes.join("; "))
@@ -85,8 +85,8 @@ fn names_with_two_meanings_are_reported_where_they_are_used() {
     assert!(said("recording: {f: offset}", "t,q,offset\n")[0].contains("`offset` cannot be used here"));
     assert!(said("recording: {f: a}", "t,q,a,a\n")[0].contains("`a` cannot be used here"));
     // Neither is used here.
-    let log = Log::open("log.csv", "t,q,f,a,a,spare\n".as_bytes()).expect("a header");
-    assert!(resolve(CART, &log).is_ok());
+    let mut log = Log::open("log.csv", "t,q,f,a,a,spare\n".as_bytes()).expect("a header");
+    assert!(resolve(CART, &mut log).is_ok());
 }
 
 #[test]

@@ -28,7 +28,7 @@ observer: {gain: 50, filter: 5}
 ";
 
 /// The replay of a model for this header.
-fn resolve(text: &str, log: &Log) -> Result<Replay, Vec<Diagnostic>> {
+fn resolve(text: &str, log: &mut Log) -> Result<Replay, Vec<Diagnostic>> {
     let source = Source::new("test", text).expect("a short text");
     let model = Model::parse(&source)?;
     let plant = Plant::resolve(&model)?;
@@ -39,7 +39,7 @@ fn resolve(text: &str, log: &Log) -> Result<Replay, Vec<Diagnostic>> {
 /// The result, and the estimates.
 fn replay(model: &str, recording: &str) -> Result<(Replayed, String), Failure> {
     let mut log = Log::open("log.csv", recording.as_bytes()).map_err(Failure::Unreadable)?;
-    let replay = resolve(model, &log).expect("the columns have a meaning");
+    let replay = resolve(model, &mut log).expect("the columns have a meaning");
     let mut estimates = Vec::new();
     let replayed = replay.run(&mut log, Some(&mut estimates), &mut |_, _| ControlFlow::Continue(()))?;
     Ok((replayed, String::from_utf8(estimates).expect("a text")))
@@ -54,7 +54,7 @@ fn faults(recording: &str) -> Vec<String> {
 /// The complaint about a recording of the cart that cannot be read.
 fn refusal(recording: &str) -> String {
     let failure = replay(CART, recording).expect_err("it cannot be read");
-    let log = Log::open("log.csv", "t,q,f\n".as_bytes()).expect("a header");
-    let diagnostic = resolve(CART, &log).expect("the cart").explain(&failure, "log.csv");
+    let mut log = Log::open("log.csv", "t,q,f\n".as_bytes()).expect("a header");
+    let diagnostic = resolve(CART, &mut log).expect("the cart").explain(&failure, "log.csv");
     format!("{}: {} | {}", diagnostic.code.name(), diagnostic.message, diagnostic.help.unwrap_or_default())
 }

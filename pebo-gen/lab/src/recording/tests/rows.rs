@@ -150,7 +150,7 @@ fn a_caller_may_end_it() {
     let rows: Vec<String> = (0..5000).map(|k| format!("{k},0,0\n")).collect();
     let text = format!("t,q,f\n{}", rows.concat());
     let mut log = Log::open("log.csv", text.as_bytes()).expect("a header");
-    let replay = resolve(CART, &log).expect("the cart");
+    let replay = resolve(CART, &mut log).expect("the cart");
     let mut seen = Vec::new();
     let failure = replay.run(&mut log, None, &mut |rows, _| {
         seen.push(rows);
@@ -185,7 +185,8 @@ fn an_output_that_is_an_angle_goes_on_over_its_turns() {
 
 /// Rows of the cart from rest under a force of 1 N, at these times.
 fn pushed(times: impl IntoIterator<Item = f64>, start: f64) -> String {
-    times.into_iter().map(|t| format!("{t},{},1\n", (t - start).powi(2) / 2.0)).collect()
+    let rows: Vec<String> = times.into_iter().map(|t| format!("{t},{},1\n", (t - start).powi(2) / 2.0)).collect();
+    rows.concat()
 }
 
 fn times(start: f64, count: u32) -> Vec<f64> {
@@ -223,7 +224,6 @@ fn times_count_from_the_first_row() {
     let (replayed, estimates) = replay(CART, &format!("t,q,f\n{late}")).expect("a replay");
     let (early, _) = replay(CART, &format!("t,q,f\n{}", pushed(times(0.0, 300), 0.0))).expect("a replay");
     assert_eq!(replayed.summary, early.summary);
-    assert_eq!(replayed.start, 1e6);
     let head = "300 rows from t = 1000000 s to 1000004.671875 s, from the first of which times count\n";
     assert!(replayed.text().starts_with(head), "{}", replayed.text());
     // The table has the times of the log.

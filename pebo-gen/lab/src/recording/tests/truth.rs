@@ -76,7 +76,7 @@ const RUNS: [(&str, &str, (f64, f64)); 5] = [
 fn a_recording_on_which_nothing_settles_says_why() {
     let advice = |model: &str, recording: &str| {
         let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
-        let replay = resolve(model, &log).expect("the columns have a meaning");
+        let replay = resolve(model, &mut log).expect("the columns have a meaning");
         let replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
         replay.advise(&replayed).pop().map(|found| (found.notes.concat(), found.help.unwrap_or_default()))
     };
@@ -137,5 +137,43 @@ fn baselines_run_beside_the_observer() -> Result<(), Failure> {
     let (replayed, _) = replay(&format!("{other}recording: {{step: 0.01}}\n"), &trace.csv())?;
     assert!(replayed.text().contains("not run: the baseline `own`"), "{}", replayed.text());
     assert_eq!(replayed.summary.estimates.len(), 2);
+    Ok(())
+}
+
+/// A quantity that grows at an unknown pace, as its square.
+const GROWTH: &str = "
+model: growth
+x: [a]
+y: [q]
+u: [f]
+assume: [q > 0]
+f_x: {a: 0}
+f_y: {q: a*q^2 + f}
+phi: [a]
+";
+
+#[test]
+fn the_first_rows_say_what_no_one_wrote() -> Result<(), Failure> {
+    // Neither numbers nor a simulation: the slopes depend on where the plant is, which the rows show.
+    let simulation = "simulation: {duration: 20, step: 0.01, initial: {a: -0.3, q: 1}, noise: {q: 0.01}, \
+                      control: {f: {0: 0.2, 3: 0.5, 6: 0.2, 9: 0.5, 12: 0.2, 15: 0.5}}}\n";
+    let simulation = simulation.replace("control: {f: {", "signals: {s: {").replace("}}}", "}}, control: {f: s}}");
+    let trace = simulated(&format!("{GROWTH}{simulation}"), (20.0, 0.01));
+    let (replayed, csv) = replay(GROWTH, &trace.csv())?;
+    let text = replayed.text();
+    let known = replayed.summary.known.as_ref().expect("known numbers");
+    let sensors = &known.numbers[0];
+    assert!(sensors.recorded && !sensors.assumed && text.contains("(as the first rows show)"), "{text}");
+    // Of 256 samples the median of differences is known to some tenth.
+    assert!((sensors.values[0].value / 0.01 - 1.0).abs() < 0.25, "{text}");
+    assert!(replayed.summary.surprise.is_some_and(|square| (0.6..1.6).contains(&square)), "{text}");
+    // The table has the true state: it is compared.
+    assert!(csv.starts_with("t,a_hat,a_error,a_std\n") && replayed.summary.unsettled().is_empty(), "{text}");
+    let score = &replayed.summary.estimates[0];
+    assert!(score.score.rms < 3.0 * score.expected.expect("it is predicted"), "{text}");
+    // What an author writes counts more.
+    let told = format!("{GROWTH}observer: {{sensors: {{q: 0.02}}, start: {{a: 1}}}}\n");
+    let (replayed, _) = replay(&told, &trace.csv())?;
+    assert!(replayed.text().contains("  sensors: q 0.0200\n"), "{}", replayed.text());
     Ok(())
 }

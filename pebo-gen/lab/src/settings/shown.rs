@@ -1,0 +1,143 @@
+//! What samples show besides the model: where the plant starts, how much its sensors scatter, how often they come.
+//!
+//! In: the first samples of a recording. Out: numbers that stand in for those of a simulation.
+
+use std::collections::BTreeMap;
+
+use pebo_cas::Symbol;
+use pebo_design::model::Model;
+
+/// What samples show besides the model; nothing, where there are none yet.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// Their period in seconds, where it is known.
+    period: Option<f64>,
+    /// True if they were recorded.
+    pub(super) is_recorded: bool,
+    /// The first values of signals.
+    pub(super) first: BTreeMap<Symbol, f64>,
+    /// The standard deviations of sensors.
+    pub(super) deviations: BTreeMap<Symbol, f64>,
+}
+
+impl Shown {
+    /// Nothing but the period.
+    #[cfg(feature = "simulate")]
+    pub(crate) fn of_period(period: Option<f64>) -> Self {
+        Self { period, ..Self::default() }
+    }
+
+    /// The period of the samples: that of a recording counts more than that of a simulation, and this more than one that
+    /// is merely given.
+    pub(super) fn period_beside(&self, model: &Model) -> Option<f64> {
+        let step = model.simulation.as_ref().and_then(|simulation| simulation.step.as_ref());
+        let simulated = step.map(|step| step.value.to_f64()).filter(|step| *step > 0.0);
+        if self.is_recorded { self.period.or(simulated) } else { simulated.or(self.period) }
+    }
+
+    /// What the first samples of a recording show, signal by signal, and their instants, where the period is not known; a
+    /// value that is not finite is missing. What scatters is told of the signals in `sensors`.
+    #[cfg(feature = "simulate")]
+    pub(crate) fn by_samples(
+        (times, period): (&[f64], Option<f64>),
+        samples: &[(Symbol, Vec<f64>)],
+        sensors: &[Symbol],
+    ) -> Self {
+        let intervals = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|interval| *interval > 0.0);
+        let first = samples
+            .iter()
+            .filter_map(|(signal, values)| Some((*signal, values.iter().copied().find(|value| value.is_finite())?)));
+        let measured = samples.iter().filter(|(signal, _)| sensors.contains(signal));
+        Self {
+            period: period.or_else(|| median(intervals.collect())),
+            is_recorded: true,
+            first: first.collect(),
+            deviations: measured.filter_map(|(signal, values)| Some((*signal, scatter(values)?))).collect(),
+        }
+    }
+}
+
+/// Differences of a noise of standard deviation 1, of orders two to four, have these standard deviations: the roots of the
+/// sums of their squared coefficients.
+#[cfg(feature = "simulate")]
+const ORDERS: [f64; 3] = [2.449_489_742_783_178, 4.472_135_954_999_58, 8.366_600_265_340_756];
+
+/// The median of the absolute value of a normal number of standard deviation 1.
+#[cfg(feature = "simulate")]
+const MEDIAN: f64 = 0.674_489_750_196_081_7;
+
+/// Fewer differences say little of their median.
+#[cfg(feature = "simulate")]
+const FEWEST: usize = 30;
+
+/// The standard deviation of what samples have besides a smooth course; none where they do not tell.
+///
+/// Method: the median of differences of higher order, which outliers do not move and in which a smooth signal is the
+/// smaller the higher the order is: of orders two to four the least. A sensor that rounds to a step scatters by the
+/// twelfth root of it at least.
+#[cfg(feature = "simulate")]
+fn scatter(values: &[f64]) -> Option<f64> {
+    let mut differences: Vec<f64> = values.to_vec();
+    differ(&mut differences);
+    let step = differences.iter().map(|d| d.abs()).filter(|d| *d > 0.0 && d.is_finite()).min_by(f64::total_cmp)?;
+    let of_orders = ORDERS.map(|size| {
+        differ(&mut differences);
+        let known: Vec<f64> = differences.iter().map(|d| d.abs()).filter(|d| d.is_finite()).collect();
+        Some(known).filter(|known| known.len() >= FEWEST).and_then(median).map(|median| median / (MEDIAN * size))
+    });
+    let least = of_orders.into_iter().flatten().min_by(f64::total_cmp)?;
+    Some(least.max(step / 12.0_f64.sqrt()))
+}
+
+/// Replaces values by their differences.
+#[cfg(feature = "simulate")]
+fn differ(values: &mut Vec<f64>) {
+    for place in 1..values.len() {
+        values[place - 1] = values[place] - values[place - 1];
+    }
+    values.pop();
+}
+
+#[cfg(feature = "simulate")]
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+#[cfg(all(test, feature = "simulate"))]
+mod tests {
+    use super::scatter;
+
+    /// Numbers of mean 0 and standard deviation 1, nearly normal: sums of twelve even ones.
+    fn noise(count: usize) -> Vec<f64> {
+        let mut state = 1_u64;
+        let mut even = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from(u32::try_from(state >> 33).unwrap()) / f64::from(1_u32 << 31)
+        };
+        (0..count).map(|_| (0..12).map(|_| even()).sum::<f64>() - 6.0).collect()
+    }
+
+    #[test]
+    fn what_a_sensor_scatters_by_is_told_from_its_course() {
+        let time = |k: usize| f64::from(u32::try_from(k).unwrap()) * 0.01;
+        // A swing of 10 at half a hertz, sampled at 100: noise of 0.05 on it, known to some percent from 500 samples.
+        let noisy: Vec<f64> =
+            noise(500).iter().enumerate().map(|(k, e)| 10.0 * (3.0 * time(k)).sin() + 0.05 * e).collect();
+        let found = scatter(&noisy).unwrap();
+        assert!((found / 0.05 - 1.0).abs() < 0.15, "{found}");
+        // Two samples are missing, and one of fifty is off by far.
+        let mut holes = noisy.clone();
+        holes[100] = f64::NAN;
+        holes[101] = f64::NAN;
+        (0..500).step_by(50).for_each(|k| holes[k] += 30.0);
+        let found = scatter(&holes).unwrap();
+        assert!((found / 0.05 - 1.0).abs() < 0.3, "{found}");
+        // An ideal sensor that rounds to 0.1.
+        let rounded: Vec<f64> = (0..500).map(|k| (10.0 * (3.0 * time(k)).sin() * 10.0).round() / 10.0).collect();
+        let found = scatter(&rounded).unwrap();
+        assert!((0.02..0.04).contains(&found), "{found}");
+        // Neither a constant nor a few samples tell.
+        assert_eq!((scatter(&[1.0; 100]), scatter(&noisy[..20])), (None, None));
+    }
+}
