@@ -191,6 +191,18 @@ impl Derived {
         pebo_lab::Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides)
     }
 
+    /// The standard deviations of sensors and disturbances with which the observer makes these rows of a recording, with
+    /// its header, most likely. `watch` gets the number of replays so far, and may end the search.
+    #[cfg(feature = "simulate")]
+    pub fn fitted(
+        &self,
+        recording: (&str, &[u8]),
+        watch: &mut dyn FnMut(u64) -> std::ops::ControlFlow<()>,
+    ) -> Result<pebo_lab::recording::FittedNumbers, Vec<Diagnostic>> {
+        self.derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
+        pebo_lab::recording::fit((&self.model, &self.plant, &self.derivation), recording, watch)
+    }
+
     /// The observer of the model, ready to be run over recorded data with these columns.
     #[cfg(feature = "simulate")]
     pub fn replay(

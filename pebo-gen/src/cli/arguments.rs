@@ -265,6 +265,10 @@ pub(super) struct ReplayOptions {
     /// Draw the figure into this SVG file
     #[arg(long, value_name = "FILE.svg")]
     pub(super) plot: Option<PathBuf>,
+    /// Find the standard deviations of sensors and disturbances that make the first rows most likely, run the observer
+    /// with them, and print its section `observer`
+    #[arg(long)]
+    pub(super) fit: bool,
 }
 
 #[derive(Args)]

@@ -78,7 +78,7 @@ fn read(path: &Path) -> Result<Source, Box<(Source, Diagnostic)>> {
 }
 
 /// The same with settings of the call.
-fn read_with(path: &Path, settings: &[String]) -> Result<Source, Box<(Source, Diagnostic)>> {
+pub(super) fn read_with(path: &Path, settings: &[String]) -> Result<Source, Box<(Source, Diagnostic)>> {
     let unset = |diagnostic| Box::new((Source::unread(path.display().to_string()), diagnostic));
     read(path)?.set(settings).map_err(unset)
 }

@@ -1,10 +1,13 @@
 //! `pebo-gen replay`: recorded samples through the observer.
 
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, BufRead as _, BufReader, Cursor, Read, Write};
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use pebo_gen::analysis::Outcome;
+use pebo_gen::simulate::replay::FittedNumbers;
 use pebo_gen::source::{Code, Diagnostic, Source, Span};
 use pebo_gen::{Answer, Standing, Tape};
 
@@ -19,6 +22,10 @@ pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
         let message = "model and recording cannot both be read from standard input";
         return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name one of them"));
     }
+    if options.fit && files::is_standard(&options.model) {
+        let message = "numbers cannot be fitted to a model on standard input, which is read twice";
+        return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name its file"));
+    }
     match replayed(options, limit) {
         Ok(standing) => standing,
         Err(diagnostic) => {
@@ -32,18 +39,33 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     let (mut recording, size) = open(&options.data)?;
     let is_standard = files::is_standard(&options.data);
     let name = if is_standard { "standard input".to_owned() } else { options.data.display().to_string() };
+    let mut settings = options.set.clone();
+    let mut section = String::new();
+    if options.fit {
+        let head = head(&mut recording).map_err(|error| unreadable(&options.data, &error))?;
+        match fitted(options, limit, (&name, &head)) {
+            Fitted::Numbers(found) => {
+                settings.extend(found.parts().map(|(key, value)| format!("observer.{key}={value}")));
+                section = found.section();
+            }
+            Fitted::Refused(standing) => return Ok(standing),
+            // The answer says what is wrong with the model.
+            Fitted::NoObserver => {}
+        }
+        recording = Box::new(Cursor::new(head).chain(recording));
+    }
     let request = progress::replaying(limit, size);
     let mut file = options.csv.as_deref().map(files::GrowingFile::create).transpose()?;
     let (source, answer) = {
         let estimates = file.as_mut().map(|file| file as &mut dyn Write);
         let tape = Tape { name: &name, recording: &mut *recording, estimates };
-        files::replay(&options.model, &options.set, request, tape)
+        files::replay(&options.model, &settings, request, tape)
     };
     if answer.report.verdict != Outcome::Accepted {
         terminal::say(&answer.summary);
     }
     if let Some(replayed) = &answer.replay {
-        standard::summarise(&replayed.text(), options.csv.as_deref())?;
+        standard::summarise(&(replayed.text() + &section), options.csv.as_deref())?;
     }
     terminal::report(&answer.diagnostics, &source);
     let Answer { standing, replay: Some(replayed), .. } = answer else { return Ok(answer.standing) };
@@ -61,11 +83,64 @@ fn open(path: &Path) -> Result<(Box<dyn Read>, Option<u64>), Diagnostic> {
     if files::is_standard(path) {
         return Ok((Box::new(io::stdin()), None));
     }
-    let refused = |error: &io::Error| {
-        let message = format!("cannot read {}: {}", path.display(), standard::reason(error));
-        Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("check the path and the permissions")
-    };
-    let file = File::open(path).map_err(|error| refused(&error))?;
+    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     let size = file.metadata().ok().filter(std::fs::Metadata::is_file).map(|metadata| metadata.len());
     Ok((Box::new(file), size))
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
+    let message = format!("cannot read {}: {}", path.display(), standard::reason(error));
+    Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("check the path and the permissions")
+}
+
+/// The rows to which numbers are fitted: standard deviations of more are hardly better known.
+const FITTED_ROWS: usize = 4000;
+
+/// The most bytes of them.
+const FITTED_BYTES: usize = 16 << 20;
+
+/// The header and the first rows.
+fn head(recording: &mut Box<dyn Read>) -> io::Result<Vec<u8>> {
+    // Without a buffer of its own the reader would lose what comes after.
+    let rest = std::mem::replace(recording, Box::new(io::empty()));
+    let mut lines = BufReader::new(rest);
+    let mut head = Vec::new();
+    for _ in 0..=FITTED_ROWS {
+        let room = u64::try_from(FITTED_BYTES.saturating_sub(head.len())).unwrap_or_default();
+        if lines.by_ref().take(room).read_until(b'\n', &mut head)? == 0 {
+            break;
+        }
+    }
+    *recording = Box::new(lines);
+    Ok(head)
+}
+
+/// The result of fitting.
+enum Fitted {
+    Numbers(FittedNumbers),
+    /// The reasons were reported.
+    Refused(Standing),
+    /// The model has no observer.
+    NoObserver,
+}
+
+fn fitted(options: &ReplayOptions, limit: Option<Limit>, rows: (&str, &[u8])) -> Fitted {
+    let Ok(source) = files::read_with(&options.model, &options.set) else { return Fitted::NoObserver };
+    let request = limit.unwrap_or_default().request();
+    let Ok(derived) = pebo_gen::derive_within(&source, request.budget()) else { return Fitted::NoObserver };
+    if derived.derivation.outcome != Outcome::Accepted {
+        return Fitted::NoObserver;
+    }
+    let (begun, most) = (Instant::now(), limit.map(|limit| Duration::from_secs_f64(limit.0)));
+    let mut watch = |_| match most {
+        Some(most) if begun.elapsed() > most => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    match derived.fitted(rows, &mut watch) {
+        Ok(found) => Fitted::Numbers(found),
+        Err(found) => {
+            terminal::report(&found, &source);
+            Fitted::Refused(Standing::Malformed)
+        }
+    }
 }

@@ -126,3 +126,33 @@ fn a_limit_stops_it() {
     assert!(text(&output.stderr).contains("error[limit-reached]"), "{}", text(&output.stderr));
     assert!(!folder.path().join("out.csv").exists());
 }
+
+#[test]
+fn numbers_are_fitted_to_a_recording() {
+    let folder = bench();
+    let model = "model: lag\nx: [a]\ny: [q]\nf_x: {a: 0}\nf_y: {q: a - q}\nphi: [a]\n\
+                 simulation: {duration: 3, step: 0.01, initial: {a: 1, q: 0}, noise: {q: 0.05}}\n";
+    std::fs::write(folder.path().join("lag.yaml"), model).expect("a file");
+    let output = run("pebo-gen simulate lag.yaml --csv log.csv --every 0.01", folder.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let output = run("pebo-gen replay lag.yaml --data log.csv --fit -o file.csv", folder.path());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    let section = said.split("observer:\n").nth(1).expect("a section");
+    let sensor = section.split("sensors: {q: ").nth(1).and_then(|rest| rest.split('}').next()).expect("a number");
+    // 300 samples tell a standard deviation to 4 %.
+    assert!((sensor.parse::<f64>().expect("a number") / 0.05 - 1.0).abs() < 0.15, "{said}");
+    assert!(section.contains("disturbance: {a: 0}"), "{said}");
+    // The file with the section runs as the call did, and so does the recording on standard input.
+    std::fs::write(folder.path().join("told.yaml"), format!("{model}observer:\n{section}")).expect("a file");
+    run("pebo-gen replay told.yaml --data log.csv -o told.csv", folder.path());
+    run("pebo-gen replay lag.yaml --data - --fit -o piped.csv < log.csv", folder.path());
+    let [file, told, piped] =
+        ["file", "told", "piped"].map(|name| std::fs::read_to_string(folder.path().join(format!("{name}.csv"))));
+    let (file, told, piped) = (file.expect("a table"), told.expect("a table"), piped.expect("a table"));
+    assert!(file == told && file == piped && file.lines().count() == 302, "{file:.80}\n{told:.80}\n{piped:.80}");
+    let output = run("pebo-gen replay - --data log.csv --fit < lag.yaml", folder.path());
+    assert!(text(&output.stderr).contains("read twice") && output.status.code() == Some(2));
+    let output = run("pebo-gen replay cart.yaml --data log.csv --fit --set model=cart", folder.path());
+    assert!(text(&output.stderr).contains("written gains"), "{}", text(&output.stderr));
+}

@@ -20,6 +20,8 @@ pub struct Innovation<S: Real, const NR: usize> {
     /// The square of the innovation in the norm of its covariance, `e^T (Phi P Phi^T + 1)^-1 e`: on average the number
     /// of rows, if covariances and model are right.
     pub normalised_square: S,
+    /// The determinant of that covariance, `det(Phi P Phi^T + 1)`: how much less is known of the sample than of its sensors.
+    pub determinant: S,
 }
 
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
@@ -83,7 +85,11 @@ where
         let (y, u) = (y.into().into(), u.into().into());
         check(&y, &u, dt)?;
         let Some(before) = &self.terms else {
-            return Ok(Innovation { value: SVector::zeros(), normalised_square: nalgebra::zero() });
+            return Ok(Innovation {
+                value: SVector::zeros(),
+                normalised_square: nalgebra::zero(),
+                determinant: nalgebra::one(),
+            });
         };
         let terms = self.model.terms(&self.unwrapped(&y));
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
@@ -95,12 +101,18 @@ where
         let (value, root) = (error * scale, root * scale);
         // `e^T (L L^T + 1)^-1 e` is the least of `|d|^2 + |e - L d|^2`: no inverse, however little is known yet.
         let mut least = Information::from_variances(&SVector::<M::Scalar, NE>::repeat(nalgebra::one()))?;
-        let mut normalised_square = nalgebra::zero();
+        let (mut normalised_square, mut determinant) = (nalgebra::zero(), nalgebra::one());
         for (row, &value) in root.row_iter().zip(value.iter()) {
             let (rest, weight) = least.absorb_with_rest(&row.transpose(), value, nalgebra::one());
             normalised_square += weight * rest * rest;
+            // The weight of a row beyond those before it is the inverse of its variance.
+            determinant /= weight;
         }
-        if Real::is_finite(normalised_square) { Ok(Innovation { value, normalised_square }) } else { Err(Fault::State) }
+        if Real::is_finite(normalised_square) {
+            Ok(Innovation { value, normalised_square, determinant })
+        } else {
+            Err(Fault::State)
+        }
     }
 
     /// A root of the covariance of the unknown, which is as uncertain as `theta` is where it holds functions of it.

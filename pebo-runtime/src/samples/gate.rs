@@ -13,7 +13,11 @@ use crate::{Fault, Innovation, Real};
 /// ```
 /// # use pebo_runtime::{Fault, Gate, Innovation, nalgebra::SVector};
 /// let mut gate = Gate::new(9.0, 2)?;
-/// let innovation = |value: f64| Innovation { value: SVector::from([value]), normalised_square: value * value };
+/// let innovation = |value: f64| Innovation {
+///     value: SVector::from([value]),
+///     normalised_square: value * value,
+///     determinant: 1.0,
+/// };
 /// assert_eq!(gate.admit(&innovation(2.0)), Ok(()));
 /// assert_eq!(gate.admit(&innovation(4.0)), Err(Fault::Outlier));
 /// assert_eq!(gate.admit(&innovation(4.0)), Err(Fault::Outlier));

@@ -95,7 +95,7 @@ impl Scenario {
             }
         }
         let surprise = machine.driver.surprise();
-        let contradiction = contradiction(surprise, machine.driver.judged(), self.is_noisy());
+        let contradiction = contradiction(&machine.driver, self.is_noisy());
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = scored.estimate.baseline.is_none() && contradiction.is_none();

@@ -6,13 +6,16 @@
 
 use pebo_runtime::{Fault, Gap};
 
-use super::interpreted::DynObserver;
+use super::interpreted::{DynObserver, Judgement};
 use super::sizes::{LARGEST, pad};
 use crate::score::faults::{Faults, SignalNames};
 
 /// The most refused samples in a row: an observer that refuses as many has lost its state, and a later sample will not
 /// restore it.
 const PATIENCE: u64 = 100;
+
+/// The square of five standard deviations: a sample beyond is no measure of the others.
+const OUTSTANDING: f64 = 25.0;
 
 /// Samples from one judged innovation to the next: each costs a step.
 const JUDGING_INTERVAL: u64 = 16;
@@ -32,8 +35,14 @@ pub(crate) struct ObserverDriver {
     parted: u64,
     /// Samples since an innovation was judged.
     unjudged: u64,
+    /// Samples from one judged innovation to the next.
+    interval: u64,
     /// The sum of the normalised squares of innovations, and their number.
     surprise: (f64, u64),
+    /// Their sum with each at most [`OUTSTANDING`].
+    typical: f64,
+    /// The logarithm of the likelihood of the judged samples.
+    likelihood: f64,
 }
 
 impl ObserverDriver {
@@ -49,8 +58,16 @@ impl ObserverDriver {
             dropped: 0,
             parted: 0,
             unjudged: 0,
+            interval: JUDGING_INTERVAL,
             surprise: (0.0, 0),
+            typical: 0.0,
+            likelihood: 0.0,
         }
+    }
+
+    /// The same, with every sample judged.
+    pub(crate) fn judging_each(self) -> Self {
+        Self { interval: 1, ..self }
     }
 
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A
@@ -61,13 +78,15 @@ impl ObserverDriver {
     pub(crate) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
         self.unjudged += 1;
-        if self.unjudged >= JUDGING_INTERVAL
+        if self.unjudged >= self.interval
             && self.gap.is_none()
             && !is_parted
-            && let Some(square) = self.observer.surprise(y, u, dt)
+            && let Some(Judgement { square, likelihood }) = self.observer.judge(y, u, dt)
         {
             self.unjudged = 0;
             self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
+            self.typical += square.min(OUTSTANDING);
+            self.likelihood += likelihood;
         }
         let taken = match &self.gap {
             None => self.observer.sample(y, u, dt, hat),
@@ -127,6 +146,16 @@ impl ObserverDriver {
     /// The normalised square of innovations, on average over samples and rows: 1 where model and numbers are right.
     pub(crate) fn surprise(&self) -> Option<f64> {
         (self.surprise.1 > 0).then(|| self.surprise.0 / crate::timing::real(self.surprise.1))
+    }
+
+    /// The logarithm of the likelihood of the judged samples, but for a constant; none where there are none.
+    pub(crate) fn likelihood(&self) -> Option<f64> {
+        (self.surprise.1 > 0 && self.likelihood.is_finite()).then_some(self.likelihood)
+    }
+
+    /// The same without what stands out, as a step of a load does: at most five standard deviations of each count.
+    pub(crate) fn typical(&self) -> Option<f64> {
+        (self.surprise.1 > 0).then(|| self.typical / crate::timing::real(self.surprise.1))
     }
 
     /// The number of innovations behind that.

@@ -23,7 +23,7 @@ use super::monitored::MonitoredEstimator;
 use super::operator::PaddedOperator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
-use super::uncertainty::{Interval, NoiseModel, Uncertainty};
+use super::uncertainty::{Interval, NoiseModel, Surprise, Uncertainty};
 
 /// An observer of any size.
 pub(crate) trait DynObserver: fmt::Debug {
@@ -40,8 +40,8 @@ pub(crate) trait DynObserver: fmt::Debug {
     /// The number of restarts after gaps that were too long.
     fn restarts(&self) -> u64;
 
-    /// The normalised square of a sample's innovation, divided by the number of rows.
-    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64>;
+    /// What a sample says of the observer's numbers.
+    fn judge(&self, y: &[f64], u: &[f64], dt: f64) -> Option<Judgement>;
 
     /// The information of the data so far on each component of the unknown.
     fn component_information(&self) -> ComponentInformation;
@@ -49,6 +49,15 @@ pub(crate) trait DynObserver: fmt::Debug {
     /// The coordinates z for a value of theta with the present extension.
     #[cfg(test)]
     fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
+}
+
+/// What a sample says of an observer's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Judgement {
+    /// The normalised square of its innovation, divided by the number of rows.
+    pub(crate) square: f64,
+    /// The logarithm of its likelihood, but for a constant of the number of rows.
+    pub(crate) likelihood: f64,
 }
 
 /// The observer of a design, of the smallest size that has room for it: a step costs the square of the size, or its
@@ -392,6 +401,8 @@ struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize
     is_certain: bool,
     /// The covariance of the errors, where the noise of a sample is not only in its row.
     uncertainty: Option<Uncertainty<N>>,
+    /// The standard deviations of the rows of samples.
+    weights: Vec<f64>,
 }
 
 impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<X, K, N> {
@@ -421,6 +432,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             sizes: (design.recovered.len(), design.equations),
             is_certain: design.predicts(),
             uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
+            weights: match &settings.operator {
+                Operator::Sampled(deviations) => deviations.clone(),
+                Operator::Filter(_) | Operator::Window(_) => Vec::new(),
+            },
         })
     }
 
@@ -546,17 +561,19 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         Some(errors.as_slice()[..self.sizes.0].to_vec())
     }
 
-    fn surprise(&self, y: &[f64], u: &[f64], dt: f64) -> Option<f64> {
+    fn judge(&self, y: &[f64], u: &[f64], dt: f64) -> Option<Judgement> {
         let innovation = self.is_certain.then(|| self.observer.innovation(pad(y), pad(u), dt).ok())??;
-        let square = match (&self.uncertainty, self.observer.terms()) {
+        let Surprise { square, determinant } = match (&self.uncertainty, self.observer.terms()) {
             (Some(uncertainty), Some(before)) => {
                 let (after, u) = (&pad(y), &pad(u));
                 let interval = Interval { before, after, u, dt, z: self.coordinates_now() };
                 uncertainty.surprise(self.observer.model(), &interval, &innovation.value, self.sizes.1)?
             }
-            _ => innovation.normalised_square,
+            _ => Surprise { square: innovation.normalised_square, determinant: innovation.determinant },
         };
-        Some(square / crate::timing::real(u64::try_from(self.sizes.1).ok()?))
+        let likelihood =
+            -0.5 * (square + determinant.ln()) - self.weights.iter().map(|weight| weight.ln()).sum::<f64>();
+        Some(Judgement { square: square / crate::timing::real(u64::try_from(self.sizes.1).ok()?), likelihood })
     }
 
     fn restarts(&self) -> u64 {

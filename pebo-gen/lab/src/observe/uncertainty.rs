@@ -36,6 +36,15 @@ pub(crate) struct NoiseModel {
     pub(crate) measured: Vec<usize>,
 }
 
+/// What a sample says of an observer's numbers, all rows combined.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surprise {
+    /// The square of the innovation in the norm of its covariance.
+    pub(crate) square: f64,
+    /// The determinant of that covariance, in units of the rows' own.
+    pub(crate) determinant: f64,
+}
+
 /// The covariance of error and noise, at the last sample.
 #[derive(Clone, Debug)]
 pub(crate) struct Uncertainty<const N: usize> {
@@ -173,7 +182,7 @@ impl<const N: usize> Uncertainty<N> {
         interval: &Interval<'_, N>,
         innovation: &SVector<f64, N>,
         equations: usize,
-    ) -> Option<f64>
+    ) -> Option<Surprise>
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
@@ -190,8 +199,9 @@ impl<const N: usize> Uncertainty<N> {
             (true, true) => covariance[(i, j)] / (self.weights[i] * self.weights[j]),
             _ => f64::from(u8::from(i == j)),
         });
-        let square = innovation.dot(&Cholesky::new(scaled)?.solve(innovation));
-        square.is_finite().then_some(square)
+        let scaled = Cholesky::new(scaled)?;
+        let square = innovation.dot(&scaled.solve(innovation));
+        square.is_finite().then(|| Surprise { square, determinant: scaled.determinant() })
     }
 
     /// The standard errors of functions of z and a sample: by their change with each column of a root of the

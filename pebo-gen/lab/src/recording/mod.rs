@@ -13,6 +13,7 @@
 mod clock;
 mod failure;
 mod fault;
+mod fit;
 mod layout;
 mod log;
 mod moment;
@@ -29,6 +30,7 @@ mod tests;
 
 pub use failure::Failure;
 pub use fault::FaultCount;
+pub use fit::{FittedNumbers, fit};
 pub use log::{Log, Malformed, Unreadable};
 pub use replayed::{OutputResidual, Replayed};
 pub use scene::Replay;

@@ -82,15 +82,16 @@ pub(super) struct PieceResult {
 }
 
 impl<'a> Piece<'a> {
-    /// A piece before its first row.
-    pub(super) fn start(replay: &'a Replay) -> Result<Self, Failure> {
+    /// A piece before its first row; with every sample judged, or some of them.
+    pub(super) fn start(replay: &'a Replay, judges_each: bool) -> Result<Self, Failure> {
         let Replay { signals, layout, design, residuals, .. } = replay;
+        let driver = ObserverDriver::new(observer(design).map_err(Failure::Refused)?, design.names.clone());
         Ok(Self {
             replay,
             clock: Clock::new(signals.period),
             table: vec![0.0; layout.len()],
             last_outputs: vec![None; layout.y.len()],
-            driver: ObserverDriver::new(observer(design).map_err(Failure::Refused)?, design.names.clone()),
+            driver: if judges_each { driver.judging_each() } else { driver },
             followers: Vec::new(),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.scored.len()]),
@@ -288,6 +289,11 @@ impl<'a> Piece<'a> {
         self.expected.add(t, predicted);
     }
 
+    /// The logarithm of the likelihood of the judged samples.
+    pub(super) fn likelihood(&self) -> Option<f64> {
+        self.driver.likelihood()
+    }
+
     /// The reasons for which the observer refused samples.
     pub(super) fn refusals(&self) -> Vec<String> {
         self.driver.faults().iter().map(|(reason, _)| reason.to_owned()).collect()
@@ -299,7 +305,7 @@ impl<'a> Piece<'a> {
         self.look();
         let Replay { names, residuals, design, scored, measured, .. } = self.replay;
         let surprise = self.driver.surprise();
-        let contradiction = contradiction(surprise, self.driver.judged(), true);
+        let contradiction = contradiction(&self.driver, true);
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = measured.get(place).filter(|_| contradiction.is_none());

@@ -34,25 +34,17 @@ impl Replay {
         estimates: Option<&mut dyn Write>,
         watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>,
     ) -> Result<Replayed, Failure> {
-        let mut machine = ReplayState::start(self, estimates)?;
+        let mut machine = ReplayState::start(self, estimates, false)?;
         machine.header()?;
-        loop {
-            let next = machine.read(log)?;
-            let line = match next {
-                Next::Row(line) => line,
-                Next::Cut(line) => {
-                    machine.faults.count(RowFault::Cut, line);
-                    break;
-                }
-                Next::End => break,
-            };
-            machine.rows += 1;
-            machine.row(line)?;
-            if machine.rows % LOOKS == 0 && watch(machine.rows, log.bytes()).is_break() {
-                return Err(Failure::Stopped { line });
-            }
-        }
+        machine.rows(log, watch)?;
         machine.finish()
+    }
+
+    /// The logarithm of the likelihood of all samples, but for a constant; none where the observer does not say.
+    pub(super) fn likelihood(&self, log: &mut Log) -> Option<f64> {
+        let mut machine = ReplayState::start(self, None, true).ok()?;
+        machine.rows(log, &mut |_, _| ControlFlow::Continue(())).ok()?;
+        Some(machine.likelihood + machine.piece.likelihood()?)
     }
 }
 
@@ -64,6 +56,9 @@ struct ReplayState<'a, 'w> {
     cells: Vec<f64>,
     values: Vec<f64>,
     piece: Piece<'a>,
+    judges_each: bool,
+    /// The logarithm of the likelihood of the pieces before.
+    likelihood: f64,
     /// Lines and cells of the rows that are astray.
     held: Vec<(u64, Vec<f64>)>,
     /// The result of the longest piece before the present one.
@@ -78,14 +73,16 @@ struct ReplayState<'a, 'w> {
 }
 
 impl<'a, 'w> ReplayState<'a, 'w> {
-    fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>) -> Result<Self, Failure> {
+    fn start(replay: &'a Replay, estimates: Option<&'w mut dyn Write>, judges_each: bool) -> Result<Self, Failure> {
         let signals = &replay.signals;
         Ok(Self {
             replay,
             signals: Interpreter::new(&signals.program),
             cells: vec![0.0; signals.wanted.len()],
             values: vec![0.0; signals.program.outputs.len()],
-            piece: Piece::start(replay)?,
+            piece: Piece::start(replay, judges_each)?,
+            judges_each,
+            likelihood: 0.0,
             held: Vec::new(),
             longest: None,
             offset: 0.0,
@@ -95,6 +92,25 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             estimates,
             text: String::new(),
         })
+    }
+
+    /// Takes all rows.
+    fn rows(&mut self, log: &mut Log, watch: &mut dyn FnMut(u64, u64) -> ControlFlow<()>) -> Result<(), Failure> {
+        loop {
+            let line = match self.read(log)? {
+                Next::Row(line) => line,
+                Next::Cut(line) => {
+                    self.faults.count(RowFault::Cut, line);
+                    return Ok(());
+                }
+                Next::End => return Ok(()),
+            };
+            self.rows += 1;
+            self.row(line)?;
+            if self.rows.is_multiple_of(LOOKS) && watch(self.rows, log.bytes()).is_break() {
+                return Err(Failure::Stopped { line });
+            }
+        }
     }
 
     fn read(&mut self, log: &mut Log) -> Result<Next, Failure> {
@@ -152,7 +168,8 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         self.curves.interrupt(self.offset);
         let result = self.piece.finish();
         self.keep(result);
-        self.piece = Piece::start(self.replay)?;
+        self.likelihood += self.piece.likelihood().unwrap_or_default();
+        self.piece = Piece::start(self.replay, self.judges_each)?;
         let held = std::mem::take(&mut self.held);
         if let Some((line, _)) = held.first() {
             self.faults.count(RowFault::Piece, *line);

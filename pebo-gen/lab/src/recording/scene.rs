@@ -12,6 +12,7 @@ use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
 use crate::observe::request::Request;
 use crate::score::domain::AssumedDomain;
+use crate::settings::KnownNumbers;
 use crate::summary::advice::{Origin, advise};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -49,6 +50,8 @@ pub struct Replay {
     /// The names of the columns that are written.
     pub(super) columns: Vec<String>,
     pub(super) names: Names,
+    /// The usual time from row to row, in seconds.
+    period: Option<f64>,
     pub(super) span: Span,
 }
 
@@ -86,6 +89,21 @@ impl Replay {
         problems.propagate()?;
         // Without a replay there is an error, which was propagated.
         replay.ok_or_else(Vec::new)
+    }
+
+    /// The period of the first rows.
+    pub(super) fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// True if the output is a state of the observer: its rate is in the regression.
+    pub(super) fn has_rate(&self, output: &str) -> bool {
+        self.design.settings.output && self.design.rows.iter().any(|row| self.names.y[*row] == output)
+    }
+
+    /// The known numbers behind the observer's settings; none where gains are written.
+    pub(super) fn known(&self) -> Option<&KnownNumbers> {
+        self.design.settings.known.as_ref()
     }
 
     /// The advice on a recording that contradicts the observer's numbers, or on which the estimates did not converge:
@@ -145,6 +163,7 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
         errors,
         residuals,
         assumed,
+        period: shown.period(),
         span,
     })
 }

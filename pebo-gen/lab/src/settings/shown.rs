@@ -27,6 +27,12 @@ impl Shown {
         Self { period, ..Self::default() }
     }
 
+    /// The period of the first samples, in seconds.
+    #[cfg(feature = "simulate")]
+    pub(crate) fn period(&self) -> Option<f64> {
+        self.period
+    }
+
     /// The period of the samples: that of a recording counts more than that of a simulation, and this more than one that
     /// is merely given.
     pub(super) fn period_beside(&self, model: &Model) -> Option<f64> {

@@ -46,6 +46,12 @@ pub struct Value {
 }
 
 impl KnownNumbers {
+    /// The kind of the sensors' standard deviations.
+    pub(crate) const SENSORS: &str = "sensors";
+
+    /// The kind of those of the states at the start.
+    pub(crate) const START: &str = "start";
+
     /// The kind of the states' disturbances.
     pub(crate) const DISTURBANCE: &str = "disturbance";
 
@@ -102,9 +108,9 @@ impl KnownNumbers {
             numbers: vec![
                 Numbers {
                     recorded: are_shown,
-                    ..numbers("sensors", are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
+                    ..numbers(Self::SENSORS, are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
                 },
-                numbers("start", lacks(&x, &written.start), named(&x, &deviations.start, "")),
+                numbers(Self::START, lacks(&x, &written.start), named(&x, &deviations.start, "")),
                 numbers(Self::DISTURBANCE, silent, drifts),
                 numbers("covariance", false, coordinates(covariance)),
                 numbers("process noise", false, coordinates(noise)),

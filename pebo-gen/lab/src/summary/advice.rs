@@ -60,8 +60,8 @@ fn contradicted(factor: f64, origin: Origin<'_>, where_said: Span) -> Diagnostic
         // The plant is that of the model.
         (true, Origin::Simulated(..)) => diagnostic.help("raise `sensors` to what samples scatter by"),
         (true, Origin::Recorded) => diagnostic.help(
-            "raise `disturbance` by as much where the plant does more than its model says, or `sensors` where samples \
-             scatter more than that",
+            "let `replay --fit` find numbers with which they agree; or raise `disturbance` by as much where the plant does \
+             more than its model says, `sensors` where samples scatter more than that",
         ),
         (false, _) => diagnostic
             .note(format!("the simulation has {}", listed(others.iter().copied())))

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::score::Score;
 use crate::observe::certainty::Certainty;
+use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::Excitation;
 use crate::score::domain::OutsideDomain;
 use crate::score::faults::Faults;
@@ -100,15 +101,16 @@ const CREDIBLE: std::ops::RangeInclusive<f64> = 0.2..=5.0;
 /// The mean square of so many innovations is below or above these by chance in one of ten thousand runs at most.
 const ENOUGH: [u64; 2] = [20, 10];
 
-/// How many times as large innovations are as expected, if that contradicts the observer's numbers: the normalised square,
-/// the mean of so many. Samples that scatter less do so only where they are real ones, or have noise: those of an ideal
-/// sensor are no measurement of it.
-pub(crate) fn contradiction(surprise: Option<f64>, count: u64, is_noisy: bool) -> Option<f64> {
+/// How many times as large innovations are as expected, if that contradicts the observer's numbers: what is typical of
+/// their normalised squares, and the number of these. Samples that scatter less do so only where they are real ones, or
+/// have noise: those of an ideal sensor are no measurement of it.
+pub(crate) fn contradiction(driver: &ObserverDriver, is_noisy: bool) -> Option<f64> {
     let contradicts = |square: &f64| {
         let is_above = *square > 1.0;
-        !CREDIBLE.contains(square) && (is_noisy || is_above) && count >= ENOUGH[usize::from(is_above)]
+        !CREDIBLE.contains(square) && (is_noisy || is_above) && driver.judged() >= ENOUGH[usize::from(is_above)]
     };
-    Some(surprise.filter(contradicts)?.sqrt())
+    driver.typical().filter(contradicts)?;
+    Some(driver.surprise()?.sqrt())
 }
 
 impl Summary {

@@ -222,6 +222,9 @@ where
         let square = kalman.step(&whole(u.x), &Vector3::new(0.0, u.x, 0.0), &y, dt);
         // The process noise of the interval is taken at its other end: a part `lambda dt` of what little it is.
         assert!((innovation.normalised_square - square).abs() < 2e-3 * square.max(0.1), "{innovation:?} {square}");
+        // Of one row the square is that of its value over its variance.
+        let variance = innovation.value.norm_squared() / innovation.normalised_square;
+        assert!(variance.is_nan() || (innovation.determinant / variance - 1.0).abs() < 1e-9, "{innovation:?}");
         let errors = observer.standard_error().expect("a linear left inverse");
         let expected = Vector2::new(kalman.p[(1, 1)].sqrt(), kalman.p[(2, 2)].sqrt());
         assert!((errors - expected).component_div(&expected).abs().max() < 1e-9, "{errors} {expected}");

@@ -1,6 +1,7 @@
 //! Replays of tables in text.
 
 mod columns;
+mod fit;
 mod rows;
 mod truth;
 

@@ -14,7 +14,7 @@ const BATTERY: &str = include_str!("../../../../../models/battery.yaml");
 const DRIVE: &str = include_str!("../../../../../models/two_mass_drive.yaml");
 
 /// A run of the model's own scenario with every sample in the table.
-fn simulated(text: &str, (duration, step): (f64, f64)) -> Trace {
+pub(super) fn simulated(text: &str, (duration, step): (f64, f64)) -> Trace {
     let model = Model::parse(&Source::new("model", text).expect("a short text")).expect("a model");
     let plant = Plant::resolve(&model).expect("a plant");
     let derivation = pebo_design::analysis::Derivation::derive(&plant);
@@ -141,7 +141,7 @@ fn baselines_run_beside_the_observer() -> Result<(), Failure> {
 }
 
 /// A quantity that grows at an unknown pace, as its square.
-const GROWTH: &str = "
+pub(super) const GROWTH: &str = "
 model: growth
 x: [a]
 y: [q]
