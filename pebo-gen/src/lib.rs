@@ -25,7 +25,7 @@ pub mod simulate;
 #[cfg(feature = "answer")]
 pub use answer::{Answer, Request, Section, Solution, Stage, Standing, TypesetFormulas, answer, solve};
 #[cfg(feature = "simulate")]
-pub use answer::{FinalError, Run, RunRequest, Tape, replay};
+pub use answer::{FinalError, Run, RunRequest, Tape, fitted, replay};
 #[cfg(feature = "yaml")]
 pub use builder::{BuildError, Builder, BuiltModel};
 pub use derived::Derived;

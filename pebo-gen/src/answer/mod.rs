@@ -23,7 +23,7 @@ mod typeset;
 
 pub use crate::page::Section;
 #[cfg(feature = "simulate")]
-pub use replay::{Tape, replay};
+pub use replay::{Tape, fitted, replay};
 #[cfg(feature = "simulate")]
 pub use request::RunRequest;
 pub use request::{Request, Stage};

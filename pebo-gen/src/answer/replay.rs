@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use crate::derived::{Derived, derive_within};
 use pebo_design::analysis::Outcome;
 use pebo_design::source::{Diagnostic, Source};
-use pebo_lab::recording::{Failure, Log, Replayed, Unreadable};
+use pebo_lab::recording::{Failure, FittedNumbers, Log, Replayed, Unreadable};
 
 use super::request::{Request, Stage};
 use super::standing::Standing;
@@ -47,6 +47,24 @@ pub fn replay(source: &Source, request: &Request, tape: Tape<'_>) -> Answer {
         Err(diagnostics) => return Answer::of_unread(&stem(source, request), diagnostics, source),
     };
     Answer::replayed_on(&derived, source, request, tape)
+}
+
+/// Finds the standard deviations of sensors and disturbances with which a model's observer makes the first rows of a
+/// recording most likely: name and text of the recording, with its header. None where not everything is proved; `watch`
+/// gets the number of replays so far, and may end the search with what it has.
+///
+/// # Errors
+/// The diagnostics of missing columns, of a malformed row, or of an observer of written gains.
+pub fn fitted(
+    source: &Source,
+    request: &Request,
+    recording: (&str, &[u8]),
+    watch: &mut dyn FnMut(u64) -> ControlFlow<()>,
+) -> Result<Option<FittedNumbers>, Vec<Diagnostic>> {
+    match derive_within(source, request.budget()) {
+        Ok(derived) if derived.derivation.outcome == Outcome::Accepted => derived.fitted(recording, watch).map(Some),
+        _ => Ok(None),
+    }
 }
 
 impl Answer {

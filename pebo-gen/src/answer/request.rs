@@ -170,7 +170,7 @@ impl Request {
     }
 
     /// The budget of the proofs, which begin now.
-    pub fn budget(&self) -> Budget {
+    pub(super) fn budget(&self) -> Budget {
         match self.watch.clone() {
             Some(watch) => Budget::with_watch(self.seconds, move || watch(Stage::Proof).is_break()),
             None => Budget::of_seconds(self.seconds),

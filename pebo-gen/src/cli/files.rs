@@ -10,6 +10,7 @@ use pebo_gen::{Answer, Request, Solution, Tape};
 use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
+use super::terminal;
 
 /// The answer on a model file, with the text that its diagnostics refer to.
 pub(super) fn answer(path: &Path, request: Request) -> (Source, Answer) {
@@ -93,6 +94,15 @@ fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
         File::open(path)?.take(limit).read_to_end(&mut bytes)?;
     }
     Ok(bytes)
+}
+
+/// Writes the summary of a run, to standard error where the table of the run goes to standard output.
+pub(super) fn summarise(text: &str, table: Option<&Path>) -> Result<(), Diagnostic> {
+    if table.is_some_and(is_standard) {
+        terminal::say(text);
+        return Ok(());
+    }
+    standard::write(text.as_bytes())
 }
 
 /// Writes a file beside its path and moves it there, or to standard output for `-`. A device or a named pipe is written

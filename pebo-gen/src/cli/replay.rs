@@ -44,13 +44,12 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     if options.fit {
         let head = head(&mut recording).map_err(|error| unreadable(&options.data, &error))?;
         match fitted(options, limit, (&name, &head)) {
-            Fitted::Numbers(found) => {
+            Ok(Some(found)) => {
                 settings.extend(found.parts().map(|(key, value)| format!("observer.{key}={value}")));
                 section = found.section();
             }
-            Fitted::Refused(standing) => return Ok(standing),
-            // The answer says what is wrong with the model.
-            Fitted::NoObserver => {}
+            Ok(None) => {}
+            Err(standing) => return Ok(standing),
         }
         recording = Box::new(Cursor::new(head).chain(recording));
     }
@@ -65,7 +64,7 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
         terminal::say(&answer.summary);
     }
     if let Some(replayed) = &answer.replay {
-        standard::summarise(&(replayed.text() + &section), options.csv.as_deref())?;
+        files::summarise(&(replayed.text() + &section), options.csv.as_deref())?;
     }
     terminal::report(&answer.diagnostics, &source);
     let Answer { standing, replay: Some(replayed), .. } = answer else { return Ok(answer.standing) };
@@ -115,32 +114,21 @@ fn head(recording: &mut Box<dyn Read>) -> io::Result<Vec<u8>> {
     Ok(head)
 }
 
-/// The result of fitting.
-enum Fitted {
-    Numbers(FittedNumbers),
-    /// The reasons were reported.
-    Refused(Standing),
-    /// The model has no observer.
-    NoObserver,
-}
-
-fn fitted(options: &ReplayOptions, limit: Option<Limit>, rows: (&str, &[u8])) -> Fitted {
-    let Ok(source) = files::read_with(&options.model, &options.set) else { return Fitted::NoObserver };
-    let request = limit.unwrap_or_default().request();
-    let Ok(derived) = pebo_gen::derive_within(&source, request.budget()) else { return Fitted::NoObserver };
-    if derived.derivation.outcome != Outcome::Accepted {
-        return Fitted::NoObserver;
-    }
+/// The numbers that make the first rows most likely; none where the model has no observer, of which the answer says why.
+/// Otherwise the reasons are reported.
+fn fitted(
+    options: &ReplayOptions,
+    limit: Option<Limit>,
+    rows: (&str, &[u8]),
+) -> Result<Option<FittedNumbers>, Standing> {
+    let Ok(source) = files::read_with(&options.model, &options.set) else { return Ok(None) };
     let (begun, most) = (Instant::now(), limit.map(|limit| Duration::from_secs_f64(limit.0)));
     let mut watch = |_| match most {
         Some(most) if begun.elapsed() > most => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
-    match derived.fitted(rows, &mut watch) {
-        Ok(found) => Fitted::Numbers(found),
-        Err(found) => {
-            terminal::report(&found, &source);
-            Fitted::Refused(Standing::Malformed)
-        }
-    }
+    pebo_gen::fitted(&source, &limit.unwrap_or_default().request(), rows, &mut watch).map_err(|found| {
+        terminal::report(&found, &source);
+        Standing::Malformed
+    })
 }

@@ -30,7 +30,7 @@ pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {
     }
     if let Some(run) = &answer.run {
         let text = run.ensemble.as_ref().map_or_else(|| run.summary.text(), Ensemble::text);
-        if let Err(diagnostic) = standard::summarise(&text, options.csv.as_deref()) {
+        if let Err(diagnostic) = files::summarise(&text, options.csv.as_deref()) {
             return standard::refuse(diagnostic);
         }
     }

@@ -1,12 +1,11 @@
 //! Standard output: everything is written, or there is a diagnostic.
 
 use std::io::{self, Write as _};
-use std::path::Path;
 
 use pebo_gen::Standing;
 use pebo_gen::source::{Code, Diagnostic, Source, Span};
 
-use super::{files, terminal};
+use super::terminal;
 
 /// Writes all of a text. A reader that went away is no error of ours.
 pub(super) fn write(text: &[u8]) -> Result<(), Diagnostic> {
@@ -23,15 +22,6 @@ pub(super) fn print(text: &[u8]) -> Standing {
         Ok(()) => Standing::Accepted,
         Err(diagnostic) => refuse(diagnostic),
     }
-}
-
-/// Writes the summary of a run, to standard error where the table of the run goes to standard output.
-pub(super) fn summarise(text: &str, table: Option<&Path>) -> Result<(), Diagnostic> {
-    if table.is_some_and(files::is_standard) {
-        terminal::say(text);
-        return Ok(());
-    }
-    write(text.as_bytes())
 }
 
 /// Says that standard output could not be written.

@@ -7,7 +7,7 @@ use pebo_cas::Symbol;
 use pebo_design::model::{Decimal, Entry, Model, Spanned};
 use pebo_design::plant::{Plant, State};
 
-use super::point::Point;
+use super::point::{Point, UNIT};
 use super::shown::Shown;
 
 /// The error of a sensor, as a share of its value at the start.
@@ -26,9 +26,6 @@ const DRIFT: f64 = 0.02;
 /// its start. Summands that cancel, as those of a converter with a small inductance, would mean that nothing is known
 /// of it after a few samples, and with such an observer no other unknown is distinguished from it.
 const RATE: f64 = 0.01;
-
-/// An unknown order of magnitude: 1 of its unit.
-pub(super) const UNIT: f64 = 1.0;
 
 /// Standard deviations in the order of the plant's states and outputs, written or assumed.
 #[derive(Clone, Debug)]

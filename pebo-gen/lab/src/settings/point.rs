@@ -10,8 +10,10 @@ use pebo_design::model::{Entry, Formula, Model, Piece};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::program::{self, Interpreter};
 
-use super::magnitude::UNIT;
 use super::shown::Shown;
+
+/// An unknown order of magnitude: 1 of its unit.
+pub(super) const UNIT: f64 = 1.0;
 
 /// Numbers for symbols.
 #[derive(Clone, Debug)]
