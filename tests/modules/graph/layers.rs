@@ -57,6 +57,7 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["source"]),
     ("csv_core", &["lab"]),
     ("dashu_int", &["cas"]),
+    ("jiff", &["lab"]),
     // The emitter names it in the code it writes.
     ("pebo_runtime", &["lab", "emit"]),
     ("clap", &["cli"]),

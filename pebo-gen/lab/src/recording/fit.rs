@@ -88,15 +88,20 @@ pub fn fit(
                 .help("remove the gains under `observer`: known numbers then take their place"),
         ]);
     }
-    // From a guess that does not depend on what the author wrote of these, but keeps the start.
+    // From a guess that does not depend on what the author wrote.
     let mut silent = model.clone();
     silent.observer.sensors.clear();
     silent.observer.disturbance.clear();
+    let written = std::mem::take(&mut silent.observer.start);
     let still = model.observer.disturbance.iter().filter(|entry| entry.value.value.to_f64() == 0.0);
     let still: Vec<String> = still.map(|entry| entry.name.value.clone()).collect();
     let mut search = Search { model: silent, plant, derivation, still, name, rows, watch, count: 0, stopped: false };
-    let (start, mut numbers) = search.guess()?;
-    let first = search.likelihood(&start, &numbers)?.ok_or_else(|| vec![unlikely(span)])?;
+    let (mut start, mut numbers) = search.guess()?;
+    for (name, deviation) in &mut start {
+        let known = written.iter().find(|entry| entry.name.value == *name);
+        *deviation = known.map_or(*deviation, |entry| entry.value.value.to_f64());
+    }
+    let first = search.likelihood(&start, &numbers).ok_or_else(|| vec![unlikely(span)])?;
     let mut best = first;
     for factor in FACTORS {
         for _ in 0..MOST_ROUNDS {
@@ -105,7 +110,7 @@ pub fn fit(
                 for factor in [factor, 1.0 / factor] {
                     let mut other = numbers.clone();
                     other[place].value *= factor;
-                    let found = search.likelihood(&start, &other)?;
+                    let found = search.likelihood(&start, &other);
                     if let Some(found) = found.filter(|found| *found > best) {
                         (best, numbers) = (found, other);
                         break;
@@ -120,7 +125,7 @@ pub fn fit(
     for place in 0..numbers.len() {
         let mut without = numbers.clone();
         without[place].value = 0.0;
-        let found = if without[place].is_sensor { None } else { search.likelihood(&start, &without)? };
+        let found = if without[place].is_sensor { None } else { search.likelihood(&start, &without) };
         if let Some(found) = found.filter(|found| *found > best - GROWTH) {
             (best, numbers) = (found, without);
         }
@@ -192,29 +197,30 @@ impl Search<'_> {
         Ok((of(KnownNumbers::START), numbers))
     }
 
-    /// The logarithm of the likelihood of the rows with these numbers; none where an observer with them has none.
-    fn likelihood(&mut self, start: &[(String, f64)], numbers: &[Number]) -> Result<Option<f64>, Vec<Diagnostic>> {
+    /// The logarithm of the likelihood of the rows with these numbers; none where there is no observer with them, or the
+    /// search is to end.
+    fn likelihood(&mut self, start: &[(String, f64)], numbers: &[Number]) -> Option<f64> {
         if self.stopped {
-            return Ok(None);
+            return None;
         }
         self.count += 1;
         self.stopped = (self.watch)(self.count).is_break();
         let mut model = self.model.clone();
         let written = |is_sensor: bool| {
             let of_kind = numbers.iter().filter(move |number| number.is_sensor == is_sensor);
-            of_kind.map(|number| entry(&number.name, number.value)).collect::<Result<Vec<_>, _>>()
+            of_kind.map(|number| entry(&number.name, number.value)).collect::<Option<Vec<_>>>()
         };
         (model.observer.sensors, model.observer.disturbance) = (written(true)?, written(false)?);
-        let still = self.still.iter().map(|name| entry(name, 0.0)).collect::<Result<Vec<_>, _>>()?;
+        let still = self.still.iter().map(|name| entry(name, 0.0)).collect::<Option<Vec<_>>>()?;
         model.observer.disturbance.extend(still);
-        model.observer.start = start.iter().map(|(name, value)| entry(name, *value)).collect::<Result<_, _>>()?;
-        let (replay, mut log) = self.replay(&model)?;
-        Ok(replay.likelihood(&mut log).filter(|found| found.is_finite()))
+        model.observer.start = start.iter().map(|(name, value)| entry(name, *value)).collect::<Option<_>>()?;
+        let (replay, mut log) = self.replay(&model).ok()?;
+        replay.likelihood(&mut log).filter(|found| found.is_finite())
     }
 }
 
-fn entry(name: &str, value: f64) -> Result<Entry<Spanned<Decimal>>, Vec<Diagnostic>> {
-    let value = Decimal::parse(&format!("{value:e}"), Span::NOWHERE).map_err(|found| vec![found])?;
+fn entry(name: &str, value: f64) -> Option<Entry<Spanned<Decimal>>> {
+    let value = Decimal::parse(&format!("{value:e}"), Span::NOWHERE).ok()?;
     let name = Spanned { value: name.to_owned(), span: Span::NOWHERE };
-    Ok(Entry { name, value: Spanned { value, span: Span::NOWHERE } })
+    Some(Entry { name, value: Spanned { value, span: Span::NOWHERE } })
 }

@@ -41,10 +41,13 @@ fn fitted_numbers_are_those_of_the_simulation() {
     let (found, _) = fitted(GROWTH, ", plant: {a: -0.3 + 0.05*sin(t)}");
     let wanders = found.disturbance.iter().find(|(name, _)| name == "a").expect("it is sought").1;
     assert!((0.005..0.2).contains(&wanders) && found.gain > 10.0, "{found:?}");
-    // What the author wrote as 0 stays 0.
-    let told = format!("{GROWTH}observer: {{disturbance: {{a: 0}}}}\n");
+    // What the author wrote as 0 stays 0, and so does the start.
+    let told = format!("{GROWTH}observer: {{start: {{a: 1}}, disturbance: {{a: 0}}}}\n");
     let (found, _) = fitted(&told, ", plant: {a: -0.3 + 0.05*sin(t)}");
     assert!(found.disturbance.contains(&("a".to_owned(), 0.0)), "{found:?}");
+    assert_eq!(found.start, [("a".to_owned(), 1.0)]);
+    let (found, _) = fitted(&told.replace(", disturbance: {a: 0}", ""), ", plant: {a: -0.3 + 0.05*sin(t)}");
+    assert!(found.disturbance.iter().any(|(name, value)| name == "a" && *value > 0.005), "{found:?}");
     // Gains are no numbers.
     let gains = format!("{GROWTH}observer: {{gain: 1, filter: 1}}\n");
     assert!(numbers(&gains, &csv).is_err_and(|found| found[0].message.contains("written gains")));
