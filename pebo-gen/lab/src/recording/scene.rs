@@ -12,7 +12,7 @@ use crate::closed_loop::trace::Trace;
 use crate::observe::design::Design;
 use crate::observe::request::Request;
 use crate::score::domain::AssumedDomain;
-use crate::settings::KnownNumbers;
+use crate::settings::{KnownNumbers, Shown};
 use crate::summary::advice::{Origin, advise};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -117,7 +117,10 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     let (plant, arena, span) = (request.plant, &request.plant.arena, request.section);
     let numbers = request.numbers();
     let signals = Signals::resolve(request, log, problems);
-    let shown = signals.as_ref().map(|signals| signals.shown(plant, log)).unwrap_or_default();
+    let shown = match &signals {
+        Some(signals) => signals.shown(request, log, problems)?,
+        None => Shown::default(),
+    };
     let design = Design::resolve(request, derivation, &numbers, &shown, problems);
     let (signals, design) = (signals?, design?);
     let (baselines, left_out) = baselines(request, problems);

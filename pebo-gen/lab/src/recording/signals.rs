@@ -11,9 +11,9 @@ use crate::settings::Shown;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};
 use pebo_design::model::{Entry, Recording, unknown_name};
-use pebo_design::plant::{Plant, Scope, lower};
+use pebo_design::plant::{Scope, lower};
 use pebo_design::program::{Interpreter, Program};
-use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
 use super::log::Log;
 
@@ -69,8 +69,10 @@ impl Signals {
 const HEAD: usize = 256;
 
 impl Signals {
-    /// What the first rows show of the plant; nothing where they cannot be read, which the run will report.
-    pub(super) fn shown(&self, plant: &Plant, log: &mut Log) -> Shown {
+    /// What the first rows show of the plant; nothing where they cannot be read, which the run will report. Rows that do
+    /// not show where an observer begins whose gains follow from that are reported.
+    pub(super) fn shown(&self, request: &Request, log: &mut Log, problems: &mut Diagnostics) -> Option<Shown> {
+        let plant = request.plant;
         let rows = log.head(&self.wanted, HEAD).unwrap_or_default();
         let mut interpreter = Interpreter::new(&self.program);
         let mut values = vec![0.0; self.program.outputs.len()];
@@ -85,8 +87,23 @@ impl Signals {
             samples.iter_mut().zip(&values[timed..]).for_each(|(samples, value)| samples.push(*value));
         }
         let samples: Vec<(Symbol, Vec<f64>)> = signals.into_iter().zip(samples).collect();
+        // A state that is measured besides may be missing.
+        let mut needed = samples.iter().skip(self.measured.len());
+        let unknown = needed.find(|(_, values)| !values.iter().any(|value| value.is_finite()));
+        let needed = unknown.filter(|_| !request.model.observer.has_gains() && request.model.simulation.is_none());
+        if let Some((signal, _)) = needed {
+            let (name, signal) = (log.name(), plant.arena.name(*signal));
+            let message = match rows.len() {
+                0 => format!("{name} has no rows"),
+                count => format!("none of the first {count} rows of {name} has a value of `{signal}`"),
+            };
+            problems.push(Diagnostic::error(Code::RecordingMalformed, Span::NOWHERE, message).help(
+                "give rows with a value of each output and input: they say where the plant starts, as no `simulation` does",
+            ));
+            return None;
+        }
         let period = self.period.map(|(above, below)| above / below);
-        Shown::by_samples((&times, period), &samples, &outputs)
+        Some(Shown::by_samples((&times, period), &samples, &outputs))
     }
 }
 

@@ -255,3 +255,17 @@ fn numbers_times_and_units_are_read_as_loggers_write_them() {
     );
     assert!(refusal("t,q,f\ns,m,N\ns,m,N\n").contains("line 3, column 1"));
 }
+
+#[test]
+fn rows_that_show_no_start_are_reported() {
+    // Without gains and without a simulation the rows say where the plant starts.
+    let silent = CART.replace("observer: {gain: 50, filter: 5}\n", "");
+    for (recording, expected) in [
+        ("t,q,f\n", "log.csv has no rows"),
+        ("t,q,f\n0,,0\n0.1,nan,0\n", "none of the first 2 rows of log.csv has a value of `q`"),
+    ] {
+        let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
+        let found = resolve(&silent, &mut log).expect_err("nothing is shown");
+        assert_eq!(found.iter().map(|found| found.message.to_string()).collect::<Vec<_>>(), [expected]);
+    }
+}
