@@ -18,8 +18,8 @@ use pebo_design::source::{Code, Diagnostic, Span};
 
 use super::log::Log;
 use super::scene::Replay;
-use crate::closed_loop::trace::write_number;
 use crate::settings::KnownNumbers;
+use crate::summary::short;
 
 /// The steps of the search, as factors of a standard deviation: a tenth more or less changes no estimate that can be seen.
 const FACTORS: [f64; 4] = [10.0, 3.0, 1.5, 1.1];
@@ -57,20 +57,11 @@ impl FittedNumbers {
     pub fn parts(&self) -> [(&'static str, String); 3] {
         let map = |numbers: &[(String, f64)]| {
             let entries: Vec<String> =
-                numbers.iter().map(|(name, value)| format!("{name}: {}", text(*value))).collect();
+                numbers.iter().map(|(name, value)| format!("{name}: {}", short(*value))).collect();
             format!("{{{}}}", entries.join(", "))
         };
         [("sensors", map(&self.sensors)), ("start", map(&self.start)), ("disturbance", map(&self.disturbance))]
     }
-}
-
-/// Three digits, as a person would write them.
-fn text(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    let mut text = String::new();
-    let written = write_number(&mut text, rounded);
-    debug_assert!(written.is_ok(), "a string takes everything");
-    text
 }
 
 /// Finds the numbers for these rows; `name` is that of the recording in messages. `watch` gets the number of replays so
@@ -179,10 +170,7 @@ impl Search<'_> {
     fn guess(&self) -> Result<(Named, Vec<Number>), Vec<Diagnostic>> {
         let (replay, _) = self.replay(&self.model)?;
         let Some(known) = replay.known() else { return Err(vec![unlikely(self.model.name.span)]) };
-        let of = |what: &str| {
-            let found = known.numbers.iter().filter(|numbers| numbers.what == what).flat_map(|numbers| &numbers.values);
-            found.map(|value| (value.name.clone(), value.value)).collect::<Vec<_>>()
-        };
+        let of = |kind: &str| -> Named { known.of(kind).into_iter().map(|value| (value.name, value.value)).collect() };
         let number = |is_sensor: bool| move |(name, value): (String, f64)| Number { name, value, is_sensor };
         let sensors: Vec<Number> = of(KnownNumbers::SENSORS).into_iter().map(number(true)).collect();
         let disturbances = of(KnownNumbers::DISTURBANCE).into_iter().map(number(false));

@@ -123,7 +123,7 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     };
     let design = Design::resolve(request, derivation, &numbers, &shown, problems);
     let (signals, design) = (signals?, design?);
-    let (baselines, left_out) = baselines(request, problems);
+    let (baselines, left_out) = baselines(request, &design, problems);
     let (named, resolved): (Vec<&str>, Vec<NamedBaseline>) = baselines.into_iter().unzip();
     let layout = Layout::new(plant, &signals.measured, &design, &named);
     let name = |symbol: Symbol| arena.name(symbol);
@@ -172,14 +172,19 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
 }
 
 /// The baselines by name, with their names, and the names of those that have equations.
-fn baselines<'a>(request: &Request<'a>, problems: &mut Diagnostics) -> (Vec<(&'a str, NamedBaseline)>, Vec<String>) {
+fn baselines<'a>(
+    request: &Request<'a>,
+    design: &Design,
+    problems: &mut Diagnostics,
+) -> (Vec<(&'a str, NamedBaseline)>, Vec<String>) {
     let Request { model, plant, .. } = *request;
     let Some(simulation) = &model.simulation else { return (Vec::new(), Vec::new()) };
     let names = scope::Names { model, simulation, plant };
     let (with_equations, named): (Vec<_>, Vec<_>) =
         simulation.baselines.iter().partition(|entry| entry.value.equations().is_some());
+    let own = design.settings.known.as_ref().map(|known| known.of(KnownNumbers::START)).unwrap_or_default();
     let mut resolve = |entry: &'a Entry<Baseline>| {
-        let resolved = NamedBaseline::resolve(&names, entry, StartError::Assumed, problems)?;
+        let resolved = NamedBaseline::resolve(&names, entry, StartError::Assumed(&own), problems)?;
         Some((entry.name.value.as_str(), resolved))
     };
     let resolved = named.into_iter().filter_map(&mut resolve).collect();

@@ -55,6 +55,11 @@ impl KnownNumbers {
     /// The kind of the states' disturbances.
     pub(crate) const DISTURBANCE: &str = "disturbance";
 
+    /// The numbers of this kind.
+    pub(crate) fn of(&self, kind: &str) -> Vec<Value> {
+        self.numbers.iter().filter(|numbers| numbers.what == kind).flat_map(|numbers| numbers.values.clone()).collect()
+    }
+
     pub(super) fn new(
         plant: &Plant,
         (model, shown): (&Model, &Shown),

@@ -11,6 +11,7 @@ use crate::closed_loop::scope::{Names, Sight, View};
 use crate::closed_loop::sensor;
 use crate::observe::design::program;
 use crate::observe::sizes::{LARGEST, pad};
+use crate::settings::Value;
 use pebo_cas::Expr;
 use pebo_design::model::{Baseline, Decimal, Entry, Kalman, Luenberger, Spanned};
 use pebo_design::plant::lower;
@@ -38,12 +39,12 @@ enum Rule {
 }
 
 /// The standard deviation of a filter's estimates at the start, where that is not written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StartError {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum StartError<'a> {
     /// The error itself, as the truth is simulated.
     Known,
-    /// That of the model's own observer, as nobody knows the truth of a recording.
-    Assumed,
+    /// That of the model's own observer by name of the state, as nobody knows the truth of a recording.
+    Assumed(&'a [Value]),
 }
 
 impl NamedBaseline {
@@ -51,7 +52,7 @@ impl NamedBaseline {
     pub(crate) fn resolve(
         names: &Names,
         entry: &Entry<Baseline>,
-        start_error: StartError,
+        start_error: StartError<'_>,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
         let place = (entry.name.value.as_str(), entry.name.span);
@@ -101,7 +102,7 @@ fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
 fn kalman(
     names: &Names,
     written: &Kalman,
-    (plant, start_error): (&LinearisedPlant, StartError),
+    (plant, start_error): (&LinearisedPlant, StartError<'_>),
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
@@ -132,12 +133,12 @@ fn kalman(
     };
     let disturbance = of_states(&written.disturbance).into_iter().map(Option::unwrap_or_default).collect();
     let mut start = of_states(&written.start);
-    if start_error == StartError::Assumed {
-        let own = of_states(&names.model.observer.start);
-        for (state, (deviation, own)) in names.plant.x.iter().zip(start.iter_mut().zip(own)) {
-            *deviation = deviation.or(own);
+    if let StartError::Assumed(own) = start_error {
+        for (state, deviation) in names.plant.x.iter().zip(&mut start) {
+            let state = arena.name(state.symbol);
+            let of_own = || own.iter().find(|value| value.name == state).map(|value| value.value);
+            *deviation = deviation.or_else(of_own);
             if deviation.is_none() {
-                let state = arena.name(state.symbol);
                 let message = format!("`{name}` needs to know how wrong its estimate of `{state}` can be at the start");
                 problems.push(
                     Diagnostic::error(Code::SimulationIncomplete, span, message)

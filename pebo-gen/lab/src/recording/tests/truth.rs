@@ -131,12 +131,16 @@ fn baselines_run_beside_the_observer() -> Result<(), Failure> {
     let names: Vec<String> = replayed.summary.estimates.iter().map(|scored| scored.estimate.name()).collect();
     assert_eq!(names, ["v", "kalman.v", "luenberger.v"]);
     assert!(replayed.figure.contains("(kalman)"));
-    // Without a start of its own a filter has that of the observer; one with equations is named.
+    // Without a start of its own a filter has that of the observer, also an assumed one; one with equations is named.
     let own = "own: {state: {a: 5*(q - a)}, estimate: {v: a}}, kalman: {sensors: {q: 0.001}}";
     let other = SHAKEN.replace("q: 1}}", &format!("q: 1}}, baselines: {{{own}}}}}"));
     let (replayed, _) = replay(&format!("{other}recording: {{step: 0.01}}\n"), &trace.csv())?;
     assert!(replayed.text().contains("not run: the baseline `own`"), "{}", replayed.text());
     assert_eq!(replayed.summary.estimates.len(), 2);
+    let silent = other.replace("observer: {sensors: {q: 0.001}, start: {v: 5}}\n", "");
+    assert!(!silent.contains("observer:"), "{silent}");
+    let (replayed, _) = replay(&format!("{silent}recording: {{step: 0.01}}\n"), &trace.csv())?;
+    assert_eq!(replayed.summary.estimates.len(), 2, "{}", replayed.text());
     Ok(())
 }
 
