@@ -116,7 +116,9 @@ impl Derived {
         let mut open = diagnostics.iter_mut().filter(|d| refused && search::settles(d.code, &self.derivation));
         if let Some(first) = open.next() {
             let budget = self.plant.arena.budget();
-            let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.cascade_class));
+            let solve = || search::solve(&self.plant, self.plant.cascade_class);
+            let of_products = search::of_products(&self.plant, &self.derivation);
+            let search = of_products.unwrap_or_else(|| budget.share(SHARE_OF_ADVICE, solve));
             *first = search.advise(&self.plant, first.clone());
             // A mend of the first mends the others.
             if search.verdict == SearchVerdict::Found {

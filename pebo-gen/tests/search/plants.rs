@@ -193,6 +193,34 @@ const CASES: &[Case] = &[
         class: Class::Gpebo,
         most: 4,
     },
+    Case {
+        from: "motor whose speed is driven by its fluxes: a transform of the angle, extended by the speed",
+        lines: "x: [th, w]\ny: [i, j]\nu: [v, s]\nangles: {th: 2*pi}\n\
+                f_x: {th: w, w: j*cos(th) - i*sin(th) - w}\nf_y: {i: v + w*sin(th), j: s - w*cos(th)}",
+        class: Class::Gpebo,
+        most: 7,
+    },
+    Case {
+        from: "drive with a resolver: the rates of sine and cosine are the speed times what is measured",
+        lines: "parameters: {J: 0.01, K: 0.5, B: 0.001}\nx: [th, w, TL]\ny: [s, c]\nu: [i]\nangles: {th: 2*pi}\n\
+                f_x: {th: w, w: (K*i - B*w - TL)/J, TL: 0}\ng_y: {s: sin(th), c: cos(th)}",
+        class: Class::Gpebo,
+        most: 4,
+    },
+    Case {
+        from: "three-phase grid: amplitude, angle and frequency, none of them a sample as it is",
+        lines: "x: [A, ph, w]\ny: [va, vb]\nassume: [A > 0, w > 0]\nangles: {ph: 2*pi}\n\
+                f_x: {A: 0, ph: w, w: 0}\ng_y: {va: A*cos(ph), vb: A*sin(ph)}",
+        class: Class::Gpebo,
+        most: 3,
+    },
+    Case {
+        from: "single-phase grid: the output stands for itself in the second rate",
+        lines: "x: [A, ph, w]\ny: [v]\nassume: [A > 0, w > 0]\nangles: {ph: 2*pi}\n\
+                f_x: {A: 0, ph: w, w: 0}\ng_y: {v: A*sin(ph)}",
+        class: Class::Gpebo,
+        most: 3,
+    },
 ];
 
 /// A polynomial that no formula shows divides its own rate.

@@ -90,6 +90,27 @@ fn a_sign_that_would_do_is_named() {
     assert_eq!(found.verdict, SearchVerdict::Found);
 }
 
+/// Of a motor the angle and an unknown flux linkage are recovered up to half a turn with the other sign.
+#[test]
+fn a_sign_of_one_constant_is_enough_where_products_of_components_are_accepted_with_it() {
+    let lines = "x: [th, w, l]\ny: [i, j]\nu: [v, s]\nangles: {th: 2*pi}\n\
+        f_x: {th: w, w: l*(j*cos(th) - i*sin(th)) - w, l: 0}\nf_y: {i: v + l*w*sin(th), j: s - l*w*cos(th)}";
+    let (plant, found) = search(lines, None);
+    let (candidate, declaration) = found.declared.into_iter().next().expect("an assumption");
+    let Declaration::Positive(signs) = &declaration else { panic!("{declaration:?}") };
+    assert_eq!(signs.iter().map(|sign| plant.arena.name(*sign)).collect::<Vec<_>>(), ["l"]);
+    assert!(candidate.is_full());
+}
+
+#[test]
+fn products_of_the_components_of_a_phi_are_its_mend() {
+    let lines = "x: [th, w]\ny: [i, j]\nu: [v, s]\nangles: {th: 2*pi}\nf_x: {th: w, w: j*cos(th) - i*sin(th) - w}\n\
+        f_y: {i: v + w*sin(th), j: s - w*cos(th)}\nphi: [i + cos(th), j + sin(th), w]";
+    let refused = answered(&format!("model: m\n{lines}\n"));
+    let help = refused.diagnostics[0].help.clone().unwrap_or_default();
+    assert!(help.starts_with("use `phi: [i + cos(th), j + sin(th), w, (i + cos(th))^2"), "{help}");
+}
+
 fn answered(text: &str) -> pebo_gen::Answer {
     answer(&Source::new("m.yaml", text).expect("a text"), &Request::new())
 }

@@ -31,7 +31,7 @@ fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Op
     let some: Vec<Expr> = places.iter().map(|place| basis[*place]).collect();
     let combined = |expr: Expr| combine_on(arena, domain, expr, &some, &plant.hidden());
     // Through the transform a sample is filtered: the output itself takes part only where it has to.
-    let known = || Some(plant.with_known_functions(expr)).filter(|known| *known != expr);
+    let known = || plant.shown(domain, expr).ok().filter(|known| *known != expr);
     let found = match combined(expr) {
         Ok(Some(found)) => found,
         other => match known().map(combined).transpose() {

@@ -20,6 +20,7 @@ mod plant;
 mod resolve;
 mod scope;
 pub mod settings;
+mod shown;
 mod start;
 mod terms;
 mod unmeasured;

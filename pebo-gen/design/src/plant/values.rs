@@ -6,9 +6,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::Diagnostics;
-use pebo_cas::{Arena, Expr, Node, Relation, Symbol};
+use pebo_cas::{Arena, Expr, Symbol};
 
-use super::plant::{Formula, Output, Plant, State};
+use super::plant::{Formula, Output, State};
 use super::resolve::confined;
 
 /// Refuses a value that depends on the output itself, or on a symbol that is not allowed.
@@ -63,33 +63,6 @@ pub(super) fn move_along(
         let rate = arena.directional(value.expr, &rates);
         output.rate = Some(Formula { expr: rate, span: value.span });
         rates.insert(output.symbol, rate);
-    }
-}
-
-impl Plant {
-    /// A formula with outputs in place of the functions of unmeasured states that their values show: with `s = sin(q)`
-    /// measured, the rate of `cos(q)` is `-s` times that of q. The same wherever the outputs have their values.
-    #[must_use]
-    pub(crate) fn with_known_functions(&self, formula: Expr) -> Expr {
-        let known = self.y.iter().filter_map(|output| self.known_function(output));
-        self.arena.replace(formula, &known.collect())
-    }
-
-    /// The function of unmeasured states that an output's value is affine in, with its value by the output.
-    fn known_function(&self, output: &Output) -> Option<(Expr, Expr)> {
-        let (arena, hidden) = (&self.arena, self.hidden());
-        let value = output.value?.expr;
-        let is_function = |part: &Expr| matches!(arena.node(*part), Node::Call(..)) && arena.depends_on(*part, &hidden);
-        let function = arena.postorder(&[value]).into_iter().rfind(is_function)?;
-        let symbol = arena.generated("function");
-        let affine = arena.replace(value, &[(function, arena.of_symbol(symbol))].into_iter().collect());
-        let slope = arena.derivative(affine, symbol);
-        let rest = arena.substitute(affine, &BTreeMap::from([(symbol, arena.zero())]));
-        let is_affine = !arena.depends_on(affine, &hidden) && !arena.symbols_of(&[slope]).contains(&symbol);
-        let is_number = arena.as_number(slope).is_some() && !arena.is_zero(slope);
-        let is_solvable = is_affine && (is_number || self.assumed().grants(arena, (slope, Relation::NonZero)));
-        let known = || arena.div(arena.sub(arena.of_symbol(output.symbol), rest), slope);
-        is_solvable.then(|| (function, known()))
     }
 }
 

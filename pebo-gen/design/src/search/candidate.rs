@@ -135,6 +135,15 @@ impl Candidate {
         self.derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x).flat_map(taken).collect()
     }
 
+    /// Tests whether a state is a sample as it is, and samples of outputs given by value are factors of the unknowns:
+    /// their noise does not average out.
+    pub(super) fn multiplies_samples(&self) -> bool {
+        let given = self.plant.y.iter().filter(|y| y.value.is_some()).map(|y| y.symbol).collect();
+        let holds_samples = |row: &Vec<Expr>| row.iter().any(|entry| self.plant.arena.depends_on(*entry, &given));
+        let regression = self.derivation.regression.result.as_ref();
+        self.copies_an_output() && regression.is_some_and(|regression| regression.phi_1.iter().any(holds_samples))
+    }
+
     /// Tests whether a state is recovered with all the noise of an output that determines it: by a component that is
     /// zero by the identities, as a state less the output that measures it, or by that output alone.
     pub(super) fn copies_an_output(&self) -> bool {

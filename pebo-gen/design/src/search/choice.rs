@@ -31,7 +31,12 @@ pub(super) struct Choice {
 /// All of the solutions as one transform.
 pub(super) fn whole(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
     let rank = rank_of_gradients(problem, solutions)?;
-    let affine = is_affine_in(problem, &problem.output_rates(), solutions)?;
+    let rates = problem.output_rates();
+    let mut affine = is_affine_in(problem, &rates, solutions)?;
+    if !affine && !problem.plant.identities.is_empty() {
+        let shown = rates.into_iter().map(|rate| problem.plant.shown(&problem.domain, rate));
+        affine = is_affine_in(problem, &shown.collect::<Result<Vec<_>, _>>()?, solutions)?;
+    }
     Ok(Choice { transforms: vec![solutions.to_vec()], rank, affine })
 }
 

@@ -14,6 +14,7 @@ use crate::source;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::candidate::Candidate;
+use super::closure;
 use super::problem::Problem;
 
 /// The share of the remaining budget for each declaration.
@@ -169,19 +170,37 @@ fn without_sign(problem: &Problem<'_>) -> Vec<Symbol> {
     problem.x.iter().copied().filter(is_unknown).collect()
 }
 
-/// The first transform that recovers the states if states without a known sign are positive.
+/// The first transform that recovers the states if a state without a known sign is positive, or all of them are: unknown
+/// constants first, which keep theirs.
 fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candidate, Declaration)> {
     let arena = problem.arena;
-    let lost = |c: &&Candidate| c.derivation.left_inverse.verdict == Verdict::Refuted;
-    let candidate = candidates.iter().filter(|c| c.derivation.cascade.verdict == Verdict::Proved).find(lost)?;
-    let signs = without_sign(problem);
-    if signs.is_empty() || !problem.goes_on() {
-        return None;
+    let is_lost = |c: &&Candidate| {
+        c.derivation.cascade.verdict == Verdict::Proved && c.derivation.left_inverse.verdict != Verdict::Proved
+    };
+    let lost = candidates.iter().find(is_lost)?;
+    let mut signs = without_sign(problem);
+    let is_constant = |state: &Symbol| problem.rates.get(state).is_some_and(|rate| arena.is_zero(*rate));
+    signs.sort_by_key(|state| !is_constant(state));
+    let alone = signs.iter().map(|state| vec![*state]);
+    let together = (signs.len() > 1).then(|| problem.x.iter().copied().filter(|state| signs.contains(state)).collect());
+    for positive in alone.chain(together) {
+        if !problem.goes_on() {
+            return None;
+        }
+        let plant = problem.plant.with_positive(&positive);
+        let with_sign = Problem::of(&plant);
+        let candidate = arena.budget().share(SHARE, || Candidate::of(&with_sign, &lost.plant.transform()));
+        let full = if candidate.is_full() {
+            Some(candidate)
+        } else {
+            let accepted = || closure::coordinates::accepted(&with_sign, &candidate.plant, &candidate.derivation);
+            arena.budget().share(SHARE, accepted)
+        };
+        if let Some(full) = full {
+            return Some((full, Declaration::Positive(positive)));
+        }
     }
-    let plant = problem.plant.with_positive(&signs);
-    let problem = Problem::of(&plant);
-    let candidate = arena.budget().share(SHARE, || Candidate::of(&problem, &candidate.plant.transform()));
-    candidate.is_full().then_some((candidate, Declaration::Positive(signs)))
+    None
 }
 
 /// The transform of the plant in which the states that it holds in sines and cosines alone are angles.

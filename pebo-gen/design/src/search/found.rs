@@ -92,12 +92,34 @@ pub enum Start {
     Identities,
     /// The identities.
     IdentitiesAlone,
+    /// The identities, where in the rates the values of outputs stand for the functions that they show.
+    Values,
+    /// The same with the states.
+    ValuesAndStates,
     /// The states divided by a polynomial that divides its own rate.
     Quotients,
     /// The outputs' rates, where unknown constants are taken for known.
     Constants,
+    /// Functions with rates free of x that determine part of the states, and the other states.
+    Partial,
     /// The outputs' rates, with the factors of unknown constants integrated by parts.
     Parts,
     /// The outputs' rates, in the components of a transform with a generalised cascade.
     Products,
+}
+
+impl Search {
+    /// The result where one transform was looked for and is accepted.
+    pub(super) fn of(accepted: Candidate) -> Self {
+        Self {
+            verdict: SearchVerdict::Found,
+            candidates: vec![accepted],
+            symmetry: None,
+            declared: Vec::new(),
+            bound: None,
+            affine: None,
+            generalised: None,
+            tried: Vec::new(),
+        }
+    }
 }

@@ -35,7 +35,7 @@ pub mod words;
 
 use std::collections::BTreeSet;
 
-use crate::analysis::Class;
+use crate::analysis::{Class, Derivation, Verdict};
 use crate::plant::{Noisier, Plant, TransformOrigin};
 use pebo_cas::Expr;
 use pebo_cas::domain::zero::decide;
@@ -128,6 +128,18 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     Search { verdict, candidates, symmetry, declared, bound, affine, generalised, tried }
 }
 
+/// The transform that consists of products of the components of the plant's own, where that has a generalised cascade
+/// and a left inverse but the outputs' rates are not affine in it; none where it is not accepted.
+#[must_use]
+pub fn of_products(plant: &Plant, derivation: &Derivation) -> Option<Search> {
+    let problem = Problem::of(plant);
+    if derivation.regression.verdict == Verdict::Proved {
+        return None;
+    }
+    let accepted = || closure::coordinates::accepted(&problem, plant, derivation);
+    plant.arena.budget().share(FOR_PRODUCTS, accepted).map(Search::of)
+}
+
 /// The attempts of a class or of any, with their candidates in order of merit.
 fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> Attempts<'a> {
     let plant = problem.plant;
@@ -144,6 +156,10 @@ fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> Attempts<'a>
         let mut others = Attempts::new(&reduced);
         others.run(class);
         attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
+    }
+    let is_quiet = |candidate: &Candidate| candidate.is_full() && !candidate.multiplies_samples();
+    if class != Some(Class::Pebo) && !attempts.candidates.iter().any(is_quiet) {
+        attempts.of_values();
     }
     if let Some(class) = class {
         attempts.candidates.retain(|candidate| candidate.derivation.class == class);
@@ -203,6 +219,9 @@ const FOR_PLAIN: u64 = 2;
 /// The share of the remaining budget for a transform with less noise or fewer exceptions than one that is accepted.
 const FOR_LESS_NOISE: u64 = 4;
 
+/// The share of the remaining budget for products of the components of the plant's own transform.
+const FOR_PRODUCTS: u64 = 2;
+
 /// The share of the remaining budget for the reason why there is none.
 const FOR_SYMMETRY: u64 = 8;
 
@@ -221,6 +240,8 @@ struct Attempts<'a> {
     generalised: Option<Bound>,
     /// Transforms in which the outputs are not affine: they are proved if nothing better is found.
     later: Vec<Vec<Expr>>,
+    /// The functions with rates free of x by which most states are determined, with their rank.
+    partial: (usize, Vec<Expr>),
     /// The transforms that were met.
     known: BTreeSet<Vec<Expr>>,
     /// The polynomials in the states that divide their own rates, once they were looked for.
@@ -239,6 +260,7 @@ impl<'a> Attempts<'a> {
             bound: None,
             generalised: None,
             later: Vec::new(),
+            partial: (0, Vec::new()),
             known: BTreeSet::new(),
             invariant: None,
             class: Class::Pebo,
@@ -349,6 +371,14 @@ impl Attempts<'_> {
                 Ok(Ansatz { of_x: affine.clone(), of_y, weight: degree + 1 })
             });
         }
+        self.nonlinear(&outputs, &[(1, 1), (2, 1), (2, 2), (3, 2)]);
+    }
+
+    /// Products of functions of x with functions of y, each to these degrees.
+    fn nonlinear(&mut self, of_outputs: &[Expr], degrees: &[(usize, usize)]) {
+        let problem = self.problem;
+        let arena = problem.arena;
+        let mut outputs = of_outputs.to_vec();
         let mut of_states = functions::of_states(problem);
         let bases = [of_states.as_slice(), &outputs, self.invariant()].concat();
         let logarithms = functions::logarithms(problem, &bases);
@@ -358,7 +388,7 @@ impl Attempts<'_> {
                 list.push(logarithm);
             }
         }
-        for (first, second) in [(1, 1), (2, 1), (2, 2), (3, 2)] {
+        for (first, second) in degrees.iter().copied() {
             if self.is_over() {
                 return;
             }
@@ -432,6 +462,10 @@ impl Attempts<'_> {
         if self.is_over() {
             return;
         }
+        self.extended();
+        if self.is_over() {
+            return;
+        }
         // The bound of transforms affine in x is looked at where that of all plain cascades is small.
         if self.bound.is_some() {
             self.generalised = affine_rates(problem, 0);
@@ -454,6 +488,28 @@ impl Attempts<'_> {
             };
             self.attempt_with(Form::Frame(degree), Rate::Affine, ansatz());
         }
+    }
+
+    /// Functions of the states whose rates are affine in themselves where outputs stand for what they show, with the
+    /// values of outputs among them: none of the states is a sample as it is.
+    fn of_values(&mut self) {
+        let problem = self.problem;
+        let values: Vec<Expr> = problem.plant.identities.iter().map(|identity| identity.expr).collect();
+        if values.is_empty() {
+            return;
+        }
+        let cleared: Vec<Expr> = values.iter().map(|value| functions::without_roots(problem, *value)).collect();
+        let states = problem.x.iter().map(|x| problem.arena.of_symbol(*x));
+        let both: Vec<Expr> = cleared.iter().copied().chain(states).collect();
+        for (start, formulas) in [(Start::Values, &values), (Start::Values, &cleared), (Start::ValuesAndStates, &both)]
+        {
+            if self.is_over() {
+                return;
+            }
+            let closed = closure::closure_of_values(problem, formulas).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(start), 0, closed);
+        }
+        self.rest();
     }
 
     /// Quotients of the states by a polynomial that divides its own rate: the rates of these may be affine, as that of
@@ -498,10 +554,24 @@ impl Attempts<'_> {
         let candidates = || attempted(&Problem::of(&measured), Some(Class::Pebo)).candidates;
         let candidates = problem.arena.budget().share(3, candidates);
         if let Some(candidate) = candidates.iter().find(|candidate| candidate.has_coordinates()) {
-            let closed = closure::coordinates::closure(problem, candidate);
+            let closed = closure::coordinates::closure(problem, &candidate.plant, &candidate.derivation);
             let closed = closed.map(Option::unwrap_or_default);
             let closed = closed.and_then(|functions| closure::observable::observable(problem, &functions));
             self.judge(Form::Closure(Start::Constants), 0, closed);
+        }
+    }
+
+    /// Functions with rates free of x that determine part of the states, extended by the others.
+    fn extended(&mut self) {
+        // Where no plain cascade determines all states, those that determine some were not looked for to the end.
+        if !self.tried.iter().any(|attempt| matches!(attempt.form, Form::Nonlinear(..))) {
+            let outputs = functions::of_outputs(self.problem);
+            self.problem.arena.budget().share(2, || self.nonlinear(&outputs, &[(1, 1), (2, 1)]));
+        }
+        let functions = std::mem::take(&mut self.partial.1);
+        if !functions.is_empty() {
+            let extended = closure::extended::extended(self.problem, &functions).map(Option::unwrap_or_default);
+            self.judge(Form::Closure(Start::Partial), 0, extended);
         }
     }
 
@@ -509,7 +579,7 @@ impl Attempts<'_> {
     fn of_products(&mut self) {
         let is_generalised = |c: &&Candidate| c.derivation.class == Class::Gpebo && c.has_coordinates();
         let Some(candidate) = self.candidates.iter().find(is_generalised) else { return };
-        let closed = closure::coordinates::closure(self.problem, candidate);
+        let closed = closure::coordinates::closure(self.problem, &candidate.plant, &candidate.derivation);
         self.judge(Form::Closure(Start::Products), 0, closed.map(Option::unwrap_or_default));
     }
 
@@ -524,11 +594,15 @@ impl Attempts<'_> {
         // A large null space does not keep other forms from being tried.
         let of = |ansatz: Ansatz| problem.arena.budget().share(2, || ansatz.solutions(problem, rate));
         let solutions = ansatz.and_then(of);
-        self.judge(form, columns, solutions);
+        let found = if rate == Rate::Free { solutions.as_ref().map_or(Vec::new(), Vec::clone) } else { Vec::new() };
+        let rank = self.judge(form, columns, solutions);
+        if rank > self.partial.0 {
+            self.partial = (rank, found);
+        }
     }
 
-    /// Derives the claims of the transforms that were found.
-    fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) {
+    /// Derives the claims of the transforms that were found; the rank of their gradients by x.
+    fn judge(&mut self, form: Form, columns: usize, solutions: Result<Vec<Expr>, Obstacle>) -> usize {
         let count = solutions.as_ref().map_or(0, Vec::len);
         // A closure is one transform, which would not close without one of its components.
         let choose = if matches!(form, Form::Closure(_)) { choice::whole } else { choice::choose };
@@ -539,7 +613,7 @@ impl Attempts<'_> {
         };
         self.tried.push(Attempt { form, columns, solutions: count, rank: choice.rank, obstacle });
         if choice.rank < self.problem.x.len() {
-            return;
+            return choice.rank;
         }
         for (index, phi) in choice.transforms.into_iter().enumerate() {
             if self.is_over() || !self.known.insert(phi.clone()) {
@@ -551,6 +625,7 @@ impl Attempts<'_> {
                 self.later.push(phi);
             }
         }
+        choice.rank
     }
 
     /// Proves deferred transforms: those in which the outputs do not look affine.

@@ -68,6 +68,18 @@ fn made(m: &str, k: &str, shifts: [&str; 2], rates: [&str; 2], outputs: [&str; 2
 
 const Y: &[&str] = &["p", "q"];
 
+/// A relation names the state that it is about: an unknown constant is a transform, with a slope by itself.
+#[test]
+fn a_relation_among_the_gradients_holds_of_the_constants_that_are_transforms() {
+    let plant = plant("x: [psi, b]\ny: [p, q]\nu: [r]\nf_x: {psi: r - b, b: 0}\nf_y: {p: cos(psi), q: sin(psi)}");
+    let problem = Problem::of(&plant);
+    let bound = largest::smooth_to(&problem, 4, 0).expect("a bound");
+    assert!(bound.excludes() && bound.rank == 1, "{bound:?}");
+    let arena = &plant.arena;
+    let entries: Vec<bool> = bound.relations[0].iter().map(|entry| arena.is_zero(*entry)).collect();
+    assert_eq!(entries, [false, true], "dphi/dpsi = 0, as phi = b is a transform");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

@@ -54,9 +54,14 @@ impl Start {
             Self::Both => "the functions in the outputs' rates and the states",
             Self::Identities => "the functions in the identities and the states",
             Self::IdentitiesAlone => "the functions in the identities",
+            Self::Values => "the functions in the identities, which outputs show in their rates",
+            Self::ValuesAndStates => {
+                "the functions in the identities and the states, which outputs show in their rates"
+            }
             Self::States => "the states",
             Self::Quotients => "the states divided by a polynomial that divides its own rate",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",
+            Self::Partial => "a transform of part of the states, and the other states",
             Self::Parts => "the outputs' rates, by parts where unknown constants multiply them",
             Self::Products => "the outputs' rates, as products of components with a generalised cascade",
         }

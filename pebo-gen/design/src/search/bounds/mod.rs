@@ -183,7 +183,9 @@ fn equations(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usi
     let is_gradient = |m: &Monomial| {
         m[..states].iter().map(|e| usize::from(*e)).sum::<usize>() == 1 && m[states..].iter().all(|e| *e == 0)
     };
-    columns.sort_by_key(|m| (is_gradient(m), m.iter().map(|e| usize::from(*e)).sum::<usize>(), m.clone()));
+    // The gradient's columns in the order of the states.
+    let state = |m: &Monomial| if is_gradient(m) { m.iter().position(|e| *e == 1) } else { None };
+    columns.sort_by_key(|m| (state(m), m.iter().map(|e| usize::from(*e)).sum::<usize>(), m.clone()));
     // The least degree in x that a rate must not have.
     let known = if unknowns.class == BoundClass::AffineRate { 2 } else { 1 };
     let mut rows = Vec::new();

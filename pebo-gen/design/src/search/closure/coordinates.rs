@@ -10,25 +10,36 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pebo_cas::tower::Obstacle;
+use pebo_cas::linear::comparison::combine;
+use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
 use super::MOST;
 use super::constants::constants;
 use super::products::terms;
+use crate::analysis::{Class, Derivation};
+use crate::plant::Plant;
 use crate::search::candidate::Candidate;
 use crate::search::problem::Problem;
+use crate::search::sample::{is_affine_in, rank_of_gradients};
+
+/// The degree to which rates are looked for as polynomials in the components: of higher ones, and of the products in
+/// their rates, there are more than a closure may have.
+const DEGREE: usize = 2;
 
 /// The functions of x and y, by the coordinates of a candidate; none where there are too many, or the rates hold others
 /// than products.
-pub(in crate::search) fn closure(problem: &Problem<'_>, candidate: &Candidate) -> Result<Option<Vec<Expr>>, Obstacle> {
+pub(in crate::search) fn closure(
+    problem: &Problem<'_>,
+    plant: &Plant,
+    derivation: &Derivation,
+) -> Result<Option<Vec<Expr>>, Obstacle> {
     let arena = problem.arena;
-    let derivation = &candidate.derivation;
     let (Some(cascade), Some(inverse)) = (&derivation.cascade.result, &derivation.left_inverse.result) else {
         return Ok(None);
     };
-    let z = &candidate.plant.z;
-    let transform: BTreeMap<Symbol, Expr> = z.iter().copied().zip(candidate.plant.transform()).collect();
+    let z = &plant.z;
+    let transform: BTreeMap<Symbol, Expr> = z.iter().copied().zip(plant.transform()).collect();
     let states: BTreeMap<Symbol, Expr> = inverse.x.iter().copied().collect();
     let values: Vec<Expr> = z.iter().map(|z| arena.of_symbol(*z)).collect();
     let linear = |row: usize| cascade.lambda.as_ref().map_or(arena.zero(), |lambda| arena.dot(&lambda[row], &values));
@@ -36,7 +47,12 @@ pub(in crate::search) fn closure(problem: &Problem<'_>, candidate: &Candidate) -
     let rates: BTreeMap<Symbol, Expr> = z.iter().copied().zip(rates).collect();
     let hidden: BTreeSet<Symbol> = constants(problem).iter().chain(z).copied().collect();
     let mut found: Vec<Expr> = Vec::new();
-    let mut open = arena.substitute_all(&problem.output_rates(), &states);
+    let mut open = Vec::new();
+    for rate in problem.output_rates() {
+        let by_inverse = arena.substitute(rate, &states);
+        let is_product = products(problem, by_inverse, &hidden)?.is_some();
+        open.push(if is_product { by_inverse } else { polynomial(problem, rate, &transform)?.unwrap_or(by_inverse) });
+    }
     while let Some(formula) = open.pop() {
         let Some(functions) = products(problem, formula, &hidden)? else { return Ok(None) };
         for function in functions.into_iter().filter(|function| !found.contains(function)).collect::<Vec<_>>() {
@@ -53,7 +69,52 @@ pub(in crate::search) fn closure(problem: &Problem<'_>, candidate: &Candidate) -
         let text = arena.print(*function);
         (text.len(), text)
     });
-    Ok(Some(arena.substitute_all(&found, &transform)))
+    let mut kept = arena.substitute_all(&found, &transform);
+    // One that the others give is no unknown: of the squares of a sine and a cosine one is left.
+    for component in kept.clone().into_iter().rev() {
+        let others: Vec<Expr> = kept.iter().copied().filter(|other| *other != component).collect();
+        if is_affine_in(problem, &[component], &others)? {
+            kept = others;
+        }
+    }
+    Ok(Some(kept))
+}
+
+/// A rate as a polynomial of low degree in the components, which a left inverse does not show where these are not
+/// independent: `p*sin(th)` of `cos(th)`, `sin(th)` and `p`, from which the angle is recovered by its tangent.
+fn polynomial(problem: &Problem<'_>, rate: Expr, transform: &BTreeMap<Symbol, Expr>) -> Result<Option<Expr>, Obstacle> {
+    let arena = problem.arena;
+    let mut powers = vec![arena.one()];
+    for degree in 1..=DEGREE {
+        let last = if degree == 1 { vec![arena.one()] } else { powers.clone() };
+        for product in last {
+            for z in transform.keys() {
+                let next = arena.mul(product, arena.of_symbol(*z));
+                if !powers.contains(&next) {
+                    powers.push(next);
+                }
+            }
+        }
+        let basis = arena.substitute_all(&powers, transform);
+        let field = Field::over(arena, &problem.domain.facts, &[basis.as_slice(), &[rate]].concat())?;
+        if let Some(coefficients) = combine(&field, rate, &basis, &problem.hidden)? {
+            let coefficients: Vec<Expr> = coefficients.iter().map(|coefficient| field.show(coefficient)).collect();
+            return Ok(Some(arena.dot(&coefficients, &powers)));
+        }
+    }
+    Ok(None)
+}
+
+/// The accepted transform whose components are these functions, of one with a generalised cascade and a left inverse.
+pub(in crate::search) fn accepted(problem: &Problem<'_>, plant: &Plant, derivation: &Derivation) -> Option<Candidate> {
+    if derivation.class != Class::Gpebo {
+        return None;
+    }
+    let products = closure(problem, plant, derivation).ok()??;
+    if rank_of_gradients(problem, &products).ok()? < problem.x.len() {
+        return None;
+    }
+    Some(Candidate::of(problem, &products)).filter(Candidate::is_full)
 }
 
 /// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they

@@ -12,6 +12,7 @@ pub(super) mod by_parts;
 pub(super) mod constants;
 pub(super) mod coordinates;
 pub(crate) mod darboux;
+pub(super) mod extended;
 pub(crate) mod observable;
 mod products;
 
@@ -35,6 +36,19 @@ const MOST_PARTS: usize = 3_000;
 
 /// The closure of the functions of x in these formulas; none if it is larger than that, or the rates leave this form.
 pub(super) fn closure(problem: &Problem<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
+    closed(problem, start, Ok)
+}
+
+/// The same, where in the rates the values of outputs stand for the functions that they show.
+pub(super) fn closure_of_values(problem: &Problem<'_>, start: &[Expr]) -> Result<Option<Vec<Expr>>, Obstacle> {
+    closed(problem, start, |rate| problem.plant.shown(&problem.domain, rate))
+}
+
+fn closed(
+    problem: &Problem<'_>,
+    start: &[Expr],
+    reduced: impl Fn(Expr) -> Result<Expr, Obstacle>,
+) -> Result<Option<Vec<Expr>>, Obstacle> {
     let mut found: Vec<Expr> = Vec::new();
     let mut open: Vec<Expr> = start.to_vec();
     while let Some(formula) = open.pop() {
@@ -51,7 +65,7 @@ pub(super) fn closure(problem: &Problem<'_>, start: &[Expr]) -> Result<Option<Ve
                 return Ok(None);
             }
             found.push(function);
-            open.push(problem.rate(function));
+            open.push(reduced(problem.rate(function))?);
         }
     }
     let mut found = plainest(problem, &found)?;

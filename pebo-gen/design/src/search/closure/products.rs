@@ -24,7 +24,9 @@ pub(in crate::search) fn terms(
     let arena = problem.arena;
     let field = Field::over(arena, &problem.domain.facts, &[formula])?;
     let fraction = field.fraction(formula)?;
-    let kernels: Vec<u32> = field.kernels_of(hidden).into_iter().collect();
+    // Of an angle by its sides, as in a left inverse, the sides alone are left in its sine.
+    let occurring: BTreeSet<u32> = fraction.variables().collect();
+    let kernels: Vec<u32> = field.kernels_of(hidden).intersection(&occurring).copied().collect();
     if kernels.iter().any(|kernel| arena.as_symbol(field.kernel(*kernel)).is_none()) {
         return Ok(None);
     }
