@@ -34,7 +34,8 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 ///
 /// Sizes: `NW = NR - M::INSTANTS + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`,
 /// which has this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error
-/// of that sample: its variance at the start is the sensor's.
+/// of that sample: its variance at the start is the sensor's, and where `p_1` is not 0, `Psi` starts with it, as `w`
+/// holds z.
 ///
 /// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based,
 /// the Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
@@ -182,11 +183,20 @@ where
     }
 
     fn begin(&self, extension: &Self::Extension, terms: &Self::Terms) -> Self::Extension {
-        // The unknown of the outputs is then the error of the first sample.
+        // The unknown of the outputs is then the error of the first sample, also where `w` holds z: `w = p_0 + p_1 z`.
+        let rates = NW - NZ;
         let seen = self.regression(extension, terms, &SVector::zeros()).known;
         let mut begun = *extension;
-        begun.rebase(&SVector::from_fn(|i, _| if i < NW - NZ { -seen[i] } else { nalgebra::zero() }));
-        begun
+        begun.rebase(&SVector::from_fn(|i, _| if i < rates { -seen[i] } else { nalgebra::zero() }));
+        let held = self.model.primitive(&M::Extension::new(SVector::zeros()), &terms.terms).factor;
+        if held == SMatrix::<M::Scalar, NR, NZ>::zeros() {
+            return begun;
+        }
+        begun.mapped(&SMatrix::from_fn(|i, j| match j.checked_sub(rates) {
+            Some(column) if i < rates => held[(i, column)],
+            _ if i == j => nalgebra::one(),
+            _ => nalgebra::zero(),
+        }))
     }
 
     fn recover(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {

@@ -147,6 +147,12 @@ impl<S: Real, const NZ: usize> Fundamental<S, NZ> {
     pub fn psi(&self) -> &SMatrix<S, NZ, NZ> {
         self.psi.value()
     }
+
+    /// The extension with a matrix before `theta`: its coordinates at `theta` are those of this one at `map theta`.
+    #[must_use]
+    pub fn mapped(&self, map: &SMatrix<S, NZ, NZ>) -> Self {
+        Self { xi: self.xi, psi: Sum::new(self.psi.value() * map) }
+    }
 }
 
 impl<S: Real, const NZ: usize> Extension<S, NZ> for Fundamental<S, NZ> {

@@ -114,6 +114,9 @@ trait ReadableExtension<const N: usize>: Extension<f64, N> + 'static {
 
     /// The offset of z, and the factor of theta.
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>);
+
+    /// The extension with a matrix before theta; of one without a fundamental matrix, which no output form has, itself.
+    fn mapped(&self, map: &SMatrix<f64, N, N>) -> Self;
 }
 
 impl<const N: usize> ReadableExtension<N> for Integrator<f64, N> {
@@ -124,6 +127,10 @@ impl<const N: usize> ReadableExtension<N> for Integrator<f64, N> {
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
         (*self.chi(), SMatrix::identity())
     }
+
+    fn mapped(&self, _: &SMatrix<f64, N, N>) -> Self {
+        *self
+    }
 }
 
 impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
@@ -133,6 +140,10 @@ impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
 
     fn parts(&self) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
         (*self.xi(), *self.psi())
+    }
+
+    fn mapped(&self, map: &SMatrix<f64, N, N>) -> Self {
+        Fundamental::mapped(self, map)
     }
 }
 
@@ -350,7 +361,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         let rates = self.output.as_ref().map_or(0, |(rates, _)| *rates);
         let mut begun = *extension;
         begun.rebase(&SVector::from_fn(|row, _| if row < rates { -known[row] } else { 0.0 }));
-        begun
+        let held = self.primitive(extension, y).factor;
+        let mut map = SMatrix::<f64, N, N>::identity();
+        map.view_mut((0, rates), (rates, self.nz)).copy_from(&held.view((0, 0), (rates, self.nz)));
+        begun.mapped(&map)
     }
 
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {

@@ -122,6 +122,12 @@ impl<const N: usize> Uncertainty<N> {
             both = of_sample * noise;
             let (known, size) = (both * of_sample.transpose(), (self.rows, self.rows));
             errors.view_mut((0, 0), size).copy_from(&known.view((0, 0), size));
+            // Where w holds z, the errors of z are in it too.
+            let held = -model.regression(&M::Extension::new(SVector::zeros()), y, u).factor;
+            let mut map = SMatrix::<f64, N, N>::identity();
+            let beside = (self.rows, N - self.rows);
+            map.view_mut((0, self.rows), beside).copy_from(&held.view((0, self.rows), beside));
+            errors = map * errors * map.transpose();
         }
         self.joint = Some(JointCovariance { errors, both, noise });
     }
