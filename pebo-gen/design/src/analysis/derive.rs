@@ -40,8 +40,8 @@ impl Derivation {
             }
             _ => (Claim::skipped(), Claim::skipped()),
         };
-        if cascade.result.is_some() && regression.result.is_some() && inverse.is_some() {
-            let refused = turns::refused(plant, &domain);
+        if let (Some(cascade), Some(regression), Some(inverse)) = (&cascade.result, &regression.result, inverse) {
+            let refused = turns::refused(plant, &domain, &turns::Computed { cascade, regression, inverse });
             if !refused.is_empty() {
                 left_inverse.doubt();
                 // Out of budget, nothing is known to be wrong.

@@ -1,11 +1,13 @@
 //! Checks that outputs that are angles may be counted from any turn.
 //!
-//! In: a plant whose claims are proved. Out: for each output with a period the refusal, unless a period more in it, with
-//! states moved by whole periods of their own, makes another trajectory of the plant: the claims hold for that one too.
-//! The samples of such an output are read within a turn, and nobody knows in which one the first of them is.
+//! In: a plant whose claims are proved. Out: for each output with a period the refusal, unless the observer computes the
+//! same a period further on, as of a bearing in sines and cosines alone, or a period more in it, with states moved by
+//! whole periods of their own, makes another trajectory of the plant: the claims hold for that one too. The samples of
+//! such an output are read within a turn, and nobody knows in which one the first of them is.
 
 use std::collections::BTreeMap;
 
+use super::design::{Cascade, LeftInverse, Regression};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::zero::decide;
@@ -14,10 +16,38 @@ use pebo_cas::{Domain, Expr, Relation, Symbol};
 /// States that turn at once are tried up to so many: each triples the ways.
 const MOST_TURNING: usize = 5;
 
+/// What an observer computes of samples.
+pub(super) struct Computed<'a> {
+    pub(super) cascade: &'a Cascade,
+    pub(super) regression: &'a Regression,
+    pub(super) inverse: &'a LeftInverse,
+}
+
+impl Computed<'_> {
+    /// Tests whether it is the same a period of an output further on; what stands under a derivative may be more by a
+    /// constant.
+    fn is_periodic(&self, plant: &Plant, domain: &Domain, (output, period): (Symbol, Expr)) -> bool {
+        let arena = &plant.arena;
+        let there = BTreeMap::from([(output, arena.add(arena.of_symbol(output), period))]);
+        let change = |expr: &Expr| arena.sub(arena.substitute(*expr, &there), *expr);
+        let Self { cascade, regression, inverse } = self;
+        let lambda = cascade.lambda.iter().flatten().flatten();
+        let rows = regression.phi_1.iter().chain(&regression.primitive_1).flatten();
+        let formulas = cascade.h.iter().chain(lambda).chain(&regression.phi_0).chain(rows);
+        let domain = domain.without_equations();
+        let is_zero = |expr: Expr| decide(arena, expr, &domain).is_zero();
+        let constants = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let is_constant = |expr: Expr| is_zero(expr) || arena.symbols_of(&[expr]).is_subset(&constants);
+        formulas.chain(inverse.x.iter().map(|(_, formula)| formula)).map(change).all(is_zero)
+            && regression.primitive_0.iter().map(change).all(is_constant)
+    }
+}
+
 /// The refusals of the outputs that have to be counted from a certain turn.
-pub(super) fn refused(plant: &Plant, domain: &Domain) -> Vec<Diagnostic> {
+pub(super) fn refused(plant: &Plant, domain: &Domain, computed: &Computed<'_>) -> Vec<Diagnostic> {
     let outputs = plant.y.iter().filter_map(|output| Some((output.symbol, plant.period(output.symbol)?)));
-    let open = outputs.filter(|(output, period)| !turns(plant, domain, (*output, *period)));
+    let is_known = |angle| computed.is_periodic(plant, domain, angle) || turns(plant, domain, angle);
+    let open = outputs.filter(|(output, period)| !is_known((*output, *period)));
     open.map(|(output, _)| refuse(plant, output)).collect()
 }
 

@@ -228,7 +228,9 @@ fn with_bounds(
 ) -> Option<(Candidate, Declaration)> {
     let (plant, arena) = (problem.plant, problem.arena);
     let angle = |state: &Symbol| Some((*state, arena.scale(period(plant, *state)?, &Rational::new(1, 4)?)));
-    let angles: Vec<(Symbol, Expr)> = problem.x.iter().filter_map(angle).collect();
+    // What is declared to be an angle turns.
+    let open = problem.x.iter().filter(|state| plant.period(**state).is_none());
+    let angles: Vec<(Symbol, Expr)> = open.filter_map(angle).collect();
     if angles.is_empty() || !problem.goes_on() {
         return None;
     }

@@ -84,7 +84,11 @@ fn the_turn_of_an_output_changes_states_by_periods_alone() {
     };
     let friction =
         "x: [v, b]\ny: [q]\nu: [w]\nangles: {q: 2*pi}\nf_x: {v: w - b*v, b: 0}\nf_y: {q: v}\nphi: [v + b*q, b]";
+    let radar = "x: [p, q, v, w]\ny: [r, b]\nassume: [p > 0]\nangles: {b: 2*pi}\nf_x: {p: v, q: w, v: 0, w: 0}\n\
+                 g_y: {r: sqrt(p^2 + q^2), b: \"atan2(q, p)\"}\nphi: [v, w]";
     let cases = [
+        // The value of a bearing has no turns, and the observer takes its sine and cosine alone.
+        (format!("{radar}\nphi_left: {{p: r*cos(b), q: r*sin(b), v: z1, w: z2}}"), Outcome::Accepted),
         (format!("{heading}\nangles: {{s: 2*pi, psi: 2*pi}}"), Outcome::Accepted),
         (format!("{heading}\nangles: {{psi: 2*pi}}"), Outcome::Accepted),
         // The state is no angle, or the force is another one after a turn.
