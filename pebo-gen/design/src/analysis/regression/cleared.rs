@@ -13,6 +13,7 @@ use crate::analysis::affine::{self, Row};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::opaque::OpaqueTerms;
+use pebo_cas::forms::tidy::with_fewer_conditions;
 use pebo_cas::solve::{self, cleared, solve};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Node, Symbol};
@@ -79,8 +80,11 @@ fn forms_in_z(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
     let written = in_z(identity);
     if premises.cascade.lambda.is_some() || premises.left_inverse.is_none() {
         // Functions of theta are of no use here.
-        if !premises.is_hidden(written) && premises.row(written).is_some() {
-            return vec![written];
+        // A left inverse may divide where the affine function does not: `z1*(z2/z1)`.
+        if !premises.is_hidden(written)
+            && let Some(row) = premises.row(written)
+        {
+            return vec![with_fewer_conditions(premises.arena(), premises.domain, written, &[premises.of_row(&row)])];
         }
         return Some(linear()).filter(|forms| !forms.is_empty()).unwrap_or_else(|| vec![written]);
     }

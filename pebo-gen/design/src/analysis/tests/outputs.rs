@@ -121,6 +121,15 @@ fn values_that_are_not_linear_stand_in_combinations_that_are() {
     assert!(identified.kind == Excitation::Instant && identified.singular_where.is_empty());
 }
 
+/// The state is a quotient of components, and the value of the output is affine in them.
+#[test]
+fn a_value_is_affine_without_the_division_of_a_left_inverse() {
+    let tyre = "parameters: {V: 20}\nx: [v, c]\nassume: [c > 0]\ny: [a, r]\nu: [d]\n\
+                f_x: {v: c*(d - v) - V*r, c: 0}\nf_y: {r: c*d - r}\ng_y: {a: c*(d - v)}\nphi: [c, c*v]";
+    let (_, derivation) = derive(tyre);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{:?}", derivation.diagnostics);
+}
+
 #[test]
 fn functions_whose_values_outputs_give_are_known_in_rates() {
     let resolver = "x: [q, v, l]\ny: [c, s]\nu: [w]\nangles: {q: 2*pi}\nf_x: {q: v, v: w - l, l: 0}\n\
