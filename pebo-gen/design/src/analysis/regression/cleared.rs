@@ -14,9 +14,10 @@ use crate::plant::Plant;
 use pebo_cas::domain::zero::decide;
 use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::forms::tidy::with_fewer_conditions;
+use pebo_cas::number::rational::half;
 use pebo_cas::solve::{self, cleared, solve};
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Domain, Expr, Node, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Function, Node, Symbol};
 
 /// Affine functions of the transform that vanish by an identity; none where no form of it is one.
 pub(super) fn rows(premises: &Premises<'_>, identity: Expr) -> Result<Vec<Row>, Obstacle> {
@@ -28,7 +29,7 @@ pub(super) fn rows(premises: &Premises<'_>, identity: Expr) -> Result<Vec<Row>, 
         return Ok(vec![row]);
     }
     let affine = |form| as_written(plant, &everywhere, form).or_else(|| affine::of(plant, &everywhere, form).ok()?);
-    let by_others = with_other_values(premises, identity);
+    let by_others = with_other_values(premises, identity).into_iter().chain(with_other_angles(premises, identity));
     if let Some(row) = forms(premises, identity).into_iter().chain(by_others).find_map(affine) {
         return Ok(vec![row]);
     }
@@ -112,6 +113,45 @@ fn with_other_values(premises: &Premises<'_>, identity: Expr) -> Option<Expr> {
     values.retain(|symbol, value| hidden.contains(symbol) && !arena.depends_on(*value, &hidden));
     let form = arena.substitute(identity, &values);
     (form != identity && arena.depends_on(form, &hidden)).then_some(form)
+}
+
+/// An identity with distances by the angles that other equations give: `sqrt(p^2 + s^2)` is `p*cos(b) + s*sin(b)` where an
+/// output is the bearing `b = atan2(s, p)`.
+fn with_other_angles(premises: &Premises<'_>, identity: Expr) -> Option<Expr> {
+    let (arena, everywhere) = (premises.arena(), premises.domain.without_equations());
+    let roots: Vec<(Expr, Expr)> =
+        arena.postorder(&[identity]).into_iter().filter_map(|part| root(arena, part)).collect();
+    let by_angle = |other: &Expr| {
+        let ([side, ahead], angle) = angle(arena, *other)?;
+        let square = arena.add(arena.mul(side, side), arena.mul(ahead, ahead));
+        let is_distance = |(_, of): &&(Expr, Expr)| decide(arena, arena.sub(*of, square), &everywhere).is_zero();
+        let (distance, _) = roots.iter().find(is_distance)?;
+        let along = |function, side| arena.mul(arena.call(function, &[angle]), side);
+        let projected = arena.add(along(Function::Cos, ahead), along(Function::Sin, side));
+        Some(arena.replace(identity, &[(*distance, projected)].into_iter().collect()))
+    };
+    premises.domain.manifold.equations().iter().filter(|other| **other != identity).find_map(by_angle)
+}
+
+/// A square root, and that of which it is one.
+fn root(arena: &Arena, part: Expr) -> Option<(Expr, Expr)> {
+    let Node::Product(product) = arena.node(part) else { return None };
+    match product.factors.as_slice() {
+        [(base, exponent)] if product.coefficient.is_one() && *exponent == half() => Some((part, *base)),
+        _ => None,
+    }
+}
+
+/// The sides of the one angle in an equation that is a term of it, and the angle by the other terms.
+fn angle(arena: &Arena, equation: Expr) -> Option<([Expr; 2], Expr)> {
+    let Node::Sum(sum) = arena.node(equation) else { return None };
+    let sides = |term: Expr| match arena.node(term) {
+        Node::Call(Function::Atan2, arguments) => <[Expr; 2]>::try_from(arguments.to_vec()).ok(),
+        _ => None,
+    };
+    let (term, slope, sides) = sum.terms.iter().find_map(|(term, slope)| Some((*term, slope, sides(*term)?)))?;
+    let rest = arena.sub(equation, arena.scale(term, slope));
+    Some((sides, arena.scale(rest, &-&slope.recip()?)))
 }
 
 /// The components of the transform that are functions of a state given by an identity, each less its value.

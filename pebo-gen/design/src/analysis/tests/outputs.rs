@@ -131,6 +131,15 @@ fn a_value_is_affine_without_the_division_of_a_left_inverse() {
 }
 
 #[test]
+fn a_distance_is_linear_by_the_bearing_that_goes_with_it() {
+    let radar = "parameters: {lx: 3}\nx: [p, q, v, w]\ny: [r, b]\nassume: [p > lx]\nf_x: {p: v, q: w, v: 0, w: 0}\n\
+                 g_y: {r: sqrt((lx - p)^2 + q^2), b: \"atan2(q, p - lx)\"}\nphi: [p, q, v, w]";
+    let (_, derivation) = derive(radar);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{:?}", derivation.diagnostics);
+    assert!(derivation.regression.result.is_some_and(|regression| regression.unused.is_empty()));
+}
+
+#[test]
 fn functions_whose_values_outputs_give_are_known_in_rates() {
     let resolver = "x: [q, v, l]\ny: [c, s]\nu: [w]\nangles: {q: 2*pi}\nf_x: {q: v, v: w - l, l: 0}\n\
                     g_y: {c: cos(q), s: sin(q)}\nphi: [v, l, cos(q), sin(q)]";
