@@ -90,7 +90,8 @@ impl Derived {
             (Some(first), Some(last)) => first.span.to(last.span),
             _ => plant.x.first().map_or(Span::NOWHERE, |state| state.rate.span),
         };
-        let derivation = Derivation::without_transform(vec![search.refusal(&plant, states)]);
+        let refusal = search.refusal(&plant, states);
+        let derivation = Derivation::without_transform(vec![refusal], search.symmetry.is_some());
         Ok(Self { model, plant, derivation })
     }
 

@@ -7,11 +7,15 @@ use pebo_design::analysis::{
     Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
 };
 use pebo_design::plant::{Noisier, Plant, RelationForm};
-use pebo_design::source::{counted, listed};
+use pebo_design::source::{Code, Diagnostic, counted, listed};
 
 /// The meaning of the model's verdict.
 pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
+    let is_without = |found: &Diagnostic| found.code == Code::TransformNotFound;
     match derivation.outcome {
+        Outcome::Rejected if derivation.diagnostics.first().is_some_and(is_without) => {
+            "no observer recovers all of its states"
+        }
         Outcome::Accepted if derivation.conditions.is_empty() => "all four claims are proved",
         Outcome::Accepted => "all four claims are proved where the conditions below hold",
         Outcome::Rejected => "a claim is refuted",

@@ -296,6 +296,16 @@ fn states_that_no_output_shows_are_refused_as_with_a_transform() {
     }
 }
 
+/// A symmetry proves that no observer recovers the states, whatever its transform is.
+#[test]
+fn a_plant_whose_outputs_are_the_same_along_a_symmetry_is_rejected() {
+    let reactor = "model: m\nparameters: {Ks: 0.3, Sin: 5}\nx: [X, mu, k]\ny: [S]\nu: [D]\n\
+        assume: [S > 0, X > 0, mu > 0, k > 0, D > 0]\nf_x: {X: (mu*S/(Ks + S) - D)*X, mu: 0, k: 0}\n\
+        f_y: {S: -k*mu*S/(Ks + S)*X + D*(Sin - S)}\n";
+    let line = answered(reactor).report.line();
+    assert!(line.contains(r#""verdict":"rejected""#), "{line}");
+}
+
 #[test]
 fn a_declaration_with_which_a_transform_is_accepted_is_found_by_trying() {
     let hall = "parameters: {A: 1}\nx: [q, w, o1, o2]\ny: [h1, h2]\nf_x: {q: w, w: 0, o1: 0, o2: 0}\n\

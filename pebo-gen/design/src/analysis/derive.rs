@@ -103,9 +103,10 @@ impl Derivation {
         (verdict == Verdict::Refuted).then(|| Self::without_claims(verdict, found))
     }
 
-    /// The empty derivation of a plant without a transform.
-    pub fn without_transform(diagnostics: Vec<Diagnostic>) -> Self {
-        Self::without_claims(Verdict::Undecided, diagnostics)
+    /// The empty derivation of a plant without a transform: refuted where it is proved that no observer recovers its
+    /// states, else undecided.
+    pub fn without_transform(diagnostics: Vec<Diagnostic>, refuted: bool) -> Self {
+        Self::without_claims(if refuted { Verdict::Refuted } else { Verdict::Undecided }, diagnostics)
     }
 
     /// The empty derivation of a plant whose identities are not proved.
