@@ -32,30 +32,40 @@ impl Plant {
         for identity in identities {
             rules.extend(rule(&field, domain, identity, &hidden)?);
         }
-        divided(&field, formula, &rules, &hidden)
+        let fraction = field.fraction(formula)?;
+        let sides = [fraction.numerator(), fraction.denominator()].map(|side| field.of_polynomial(side));
+        let [above, below] = sides.map(|side| divided(&field, side?, &rules, &hidden));
+        match (above?, below?) {
+            (Some(above), Some(below)) if !below.is_zero() => Ok(field.show(&field.div(&above, &below)?)),
+            _ => Ok(formula),
+        }
     }
 }
 
-/// The formula divided by the rules; the formula itself where hidden symbols are in its denominator.
-fn divided(field: &Field<'_>, formula: Expr, rules: &[Rule], hidden: &[u32]) -> Result<Expr, Obstacle> {
-    let mut fraction = field.fraction(formula)?;
+/// A polynomial in hidden kernels divided by the rules; none where that does not end soon, or a rule divides by them.
+fn divided(
+    field: &Field<'_>,
+    mut fraction: Fraction,
+    rules: &[Rule],
+    hidden: &[u32],
+) -> Result<Option<Fraction>, Obstacle> {
     for _ in 0..MOST_STEPS {
         if fraction.denominator().variables().iter().any(|kernel| hidden.contains(kernel)) {
-            return Ok(formula);
+            return Ok(None);
         }
         let terms = fraction.numerator().collect(hidden);
         let step = terms.iter().find_map(|(monomial, coefficient)| {
             let of = |rule: &Rule| Some((quotient(monomial, &rule.leading)?, rule.rest.clone()));
             rules.iter().find_map(of).map(|(others, rest)| (monomial, coefficient, others, rest))
         });
-        let Some((monomial, coefficient, others, rest)) = step else { return Ok(field.show(&fraction)) };
+        let Some((monomial, coefficient, others, rest)) = step else { return Ok(Some(fraction)) };
         let factor = field.quotient(coefficient, fraction.denominator())?;
         let of = |product: &Monomial| field.of_polynomial(&Poly::from_terms([(product.clone(), 1.into())])?);
         let before = field.mul(&factor, &of(monomial)?)?;
         let after = field.mul(&field.mul(&factor, &of(&others)?)?, &rest)?;
         fraction = field.add(&field.sub(&fraction, &before)?, &after)?;
     }
-    Ok(formula)
+    Ok(None)
 }
 
 /// The rule of an identity: its product of highest degree in hidden kernels, where the factor is known and not zero.

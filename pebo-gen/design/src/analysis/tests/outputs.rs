@@ -145,6 +145,12 @@ fn functions_whose_values_outputs_give_are_known_in_rates() {
                     g_y: {c: cos(q), s: sin(q)}\nphi: [v, l, cos(q), sin(q)]";
     let (_, derivation) = derive(resolver);
     assert_eq!(derivation.outcome, Outcome::Accepted, "{:?}", derivation.diagnostics);
+    // In a denominator too.
+    let crank = "x: [q, v]\ny: [c]\nu: [w]\nangles: {q: 2*pi}\nassume: [cos(q) > 0]\nf_x: {q: w, v: v/cos(q)}\n\
+                 g_y: {c: cos(q)}\nphi: [v]";
+    let (plant, derivation) = derive(crank);
+    let lambda = derivation.cascade.result.and_then(|cascade| cascade.lambda).expect("generalised");
+    assert_eq!(plant.arena.print(lambda[0][0]), "1/c");
     // The value times a parameter, with an offset.
     let diode = "parameters: {k: 2}\nx: [a, b]\ny: [i]\nu: [w]\nf_x: {a: b, b: w}\ng_y: {i: k*(exp(a) - 1)}\n\
                  phi: [b, exp(a)]";
