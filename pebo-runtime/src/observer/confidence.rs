@@ -6,6 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::errors_in_variables::Taken;
 use super::{Observer, check, constrained};
 use crate::estimator::Information;
 use crate::extension::Extension;
@@ -117,8 +118,14 @@ where
 
     /// A root of the covariance of the unknown, which is as uncertain as `theta` is where it holds functions of it.
     fn covariance_root(&self, dt: M::Scalar) -> Option<SMatrix<M::Scalar, NE, NE>> {
-        let root = self.state.estimator.covariance_root(dt)?;
-        let Some(functions) = self.model.functions(&self.theta()) else { return Some(root) };
+        self.root_of(&self.state.estimator, dt)
+    }
+
+    /// The same of an estimator.
+    pub(super) fn root_of(&self, estimator: &E, dt: M::Scalar) -> Option<SMatrix<M::Scalar, NE, NE>> {
+        let root = estimator.covariance_root(dt)?;
+        let theta = self.model.theta(&estimator.estimate());
+        let Some(functions) = self.model.functions(&theta) else { return Some(root) };
         Some(constrained::covariance_root(&root, &functions.slopes).unwrap_or(root))
     }
 }
@@ -173,6 +180,7 @@ where
         check(&y, &u, dt)?;
         let terms = self.model.terms(&y);
         let (extension, regression) = self.propagate([before, &terms], [&u, &u], dt)?;
-        self.finish(extension, regression.without(&left_out), terms, &y, dt).map(M::X::from)
+        let sample = Taken { y: &y, u: &u, dt, left_out };
+        self.finish((extension, regression.without(&left_out)), terms, &sample).map(M::X::from)
     }
 }

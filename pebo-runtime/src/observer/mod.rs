@@ -2,6 +2,7 @@
 
 mod confidence;
 mod constrained;
+mod errors_in_variables;
 mod rebasing;
 
 use nalgebra::{SMatrix, SVector};
@@ -11,6 +12,7 @@ use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator, unwrapped};
 pub use confidence::Innovation;
+use errors_in_variables::{Correction, Led, Taken};
 use rebasing::Rebasing;
 
 /// A parameter-estimation-based observer.
@@ -71,6 +73,8 @@ pub struct Observer<
     /// The trigger of re-basing, if there is one, and the end of a step that does so. That end is compiled only where
     /// re-basing is asked for, and the rest of a step without it has no second caller.
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
+    /// The standard deviations of the sensors and the correction by them, where their noise is in the factor too.
+    correction: Option<Correction<Self, M, E, R, NX, NY, NU, NZ, NR, NE>>,
 }
 
 /// Everything that a step of an [`Observer`] changes, gains and filter included.
@@ -129,7 +133,7 @@ where
         }
         let extension = M::Extension::new(chi_0);
         let state = State { y: None, extension, regression, estimator, since: 0 };
-        Ok(Self { model, state, terms: None, rebasing: None })
+        Ok(Self { model, state, terms: None, rebasing: None, correction: None })
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -258,30 +262,69 @@ where
             return self.begin(terms, y);
         };
         let (extension, regression) = self.propagate([before, &terms], u, dt)?;
-        self.finish(extension, regression, terms, y, dt)
+        self.finish((extension, regression), terms, &Taken { y, u: u[1], dt, left_out: [false; NR] })
     }
 
     /// The end of a step, from extension and regression at the end of the interval.
     #[inline]
     fn finish(
         &mut self,
-        extension: M::Extension,
-        regression: R::Step,
+        (extension, regression): (M::Extension, R::Step),
         terms: M::Terms,
-        y: &SVector<M::Scalar, NY>,
-        dt: M::Scalar,
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         // Handed over as a copy, so that both may stay in registers where there is no re-basing.
         if let Some((turn, end)) = self.rebasing {
-            return end(self, turn, (extension, regression), (terms, y), dt);
+            return end(self, turn, (extension, regression), terms, sample);
         }
-        let mut estimator = self.state.estimator.clone();
-        estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+        let next = self.next((extension, regression), sample)?;
+        self.accept(next, terms, sample.y)
+    }
+
+    /// What a step leads to, from extension and regression at the end of the interval.
+    #[inline]
+    fn next(
+        &self,
+        (extension, regression): (M::Extension, R::Step),
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+    ) -> Result<Next<M::Extension, R::Step, E>, Fault> {
+        let equations = Sides { known: regression.regressand(), factor: regression.regressor() };
+        let before = (&extension, &self.state.regression);
+        let (estimator, corrected) = self.estimated(self.state.estimator.clone(), before, &equations, sample)?;
+        Ok(Next { extension, regression: corrected.unwrap_or(regression), estimator })
+    }
+
+    /// The estimator after a sample, from the one before it; and the regression in which it is corrected, where it is.
+    #[inline]
+    fn estimated(
+        &self,
+        before: E,
+        (extension, regression): (&M::Extension, &R),
+        equations: &Sides<M::Scalar, NR, NE>,
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+    ) -> Result<(E, Option<R::Step>), Fault> {
+        let Some((sensors, corrected)) = &self.correction else {
+            return Ok((self.learned(before, equations, sample.dt)?, None));
+        };
+        let estimator = self.learned(before.clone(), equations, sample.dt)?;
+        match corrected(self, Led { extension, estimator: &estimator, regression }, sample, sensors) {
+            Some(outcome) => {
+                let equations = Sides { known: outcome.regressand(), factor: outcome.regressor() };
+                Ok((self.learned(before, &equations, sample.dt)?, Some(outcome)))
+            }
+            None => Ok((estimator, None)),
+        }
+    }
+
+    /// The estimator after equations at the end of `dt` seconds, among the values of functions of theta.
+    #[inline]
+    fn learned(&self, mut estimator: E, equations: &Sides<M::Scalar, NR, NE>, dt: M::Scalar) -> Result<E, Fault> {
+        estimator.advance(&equations.factor, &equations.known, dt)?;
         let model = &self.model;
         estimator.constrain(|eta, information| {
             constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
         });
-        self.accept(Next { extension, regression, estimator }, terms, y)
+        Ok(estimator)
     }
 
     /// Takes the first sample, which has no interval behind it.

@@ -5,10 +5,10 @@
 
 use nalgebra::SVector;
 
+use super::errors_in_variables::Taken;
 use super::{Next, Observer, State, check};
 use crate::numeric::sum::all_finite;
-use crate::regression::Outcome as _;
-use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator};
+use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator, Sides};
 
 /// The trigger of re-basing.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ pub(super) enum Turn<S: Real> {
 }
 
 /// The end of a step of an observer `O` that starts its extension again: from its trigger, extension and regression at
-/// the end of the interval, terms and output of the sample, and the interval's time.
+/// the end of the interval, terms of the sample and the sample.
 type End<
     O,
     M,
@@ -35,8 +35,8 @@ type End<
     &mut O,
     Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>,
     (<M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>),
-    (<M as Model<NX, NY, NU, NZ, NR, NE>>::Terms, &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>),
-    <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
+    <M as Model<NX, NY, NU, NZ, NR, NE>>::Terms,
+    &Taken<'_, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY, NU, NR>,
 ) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
 
 /// The trigger of re-basing, and the end of a step that does so.
@@ -55,7 +55,7 @@ pub(super) type Rebasing<
 /// The state after an interval, if there was one.
 type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
 
-type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
+pub(super) type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
 
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize>
     Observer<M, E, NX, NY, NU, NZ, NR, NZ, R>
@@ -154,9 +154,7 @@ where
         let next = match &self.terms {
             Some(before) => {
                 let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
-                let mut estimator = self.state.estimator.clone();
-                estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
-                Some(Next { extension, regression, estimator })
+                Some(self.next((extension, regression), &Taken { y, u, dt, left_out: [false; NR] })?)
             }
             None => None,
         };
@@ -193,14 +191,13 @@ where
     fn end_without_drift(
         &mut self,
         turn: Turn<M::Scalar>,
-        (extension, regression): (M::Extension, StepOf<R, M::Scalar, NR, NZ>),
-        sample: (M::Terms, &SVector<M::Scalar, NY>),
-        dt: M::Scalar,
+        led: (M::Extension, StepOf<R, M::Scalar, NR, NZ>),
+        terms: M::Terms,
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let Turn::Drift(drift) = turn else { return Err(Fault::Gain) };
-        let mut estimator = self.state.estimator.clone();
-        estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
-        self.move_by_drift(drift, Some(Next { extension, regression, estimator }), sample, dt)
+        let next = self.next(led, sample)?;
+        self.move_by_drift(drift, Some(next), (terms, sample.y), sample.dt)
     }
 
     /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's
@@ -209,8 +206,8 @@ where
         &mut self,
         turn: Turn<M::Scalar>,
         (extension, regression): (M::Extension, R::Step),
-        (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
-        dt: M::Scalar,
+        terms: M::Terms,
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let Turn::Samples(every) = turn else { return Err(Fault::Gain) };
         let mut moved = State { extension, since: self.state.since.saturating_add(1), ..self.state.clone() };
@@ -225,8 +222,14 @@ where
                 moved.regression.reset();
             }
         }
-        moved.estimator.advance(&moved.regression.regressor(), &moved.regression.regressand(), dt)?;
-        self.keep(moved, terms, y)
+        let State { extension, regression, estimator, .. } = moved;
+        let equations = Sides { known: regression.regressand(), factor: regression.regressor() };
+        let (estimator, corrected) = self.estimated(estimator, (&extension, &regression), &equations, sample)?;
+        let mut moved = State { extension, regression, estimator, ..moved };
+        if let Some(outcome) = corrected {
+            moved.regression.take(outcome);
+        }
+        self.keep(moved, terms, sample.y)
     }
 }
 

@@ -17,6 +17,8 @@ pub struct Settings<N> {
     /// In the output form: the indices of the outputs in y, where estimates are made of the outputs that the observer
     /// expects.
     pub expected: Option<Vec<usize>>,
+    /// The standard deviations of the outputs' sensors, where their noise is in the factor of the unknown too.
+    pub errors_in_variables: Option<Vec<N>>,
     /// True if samples are joined by straight lines; else each is held.
     pub straight: bool,
     /// The estimator of the unknowns.
@@ -225,6 +227,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             operator,
             output: false,
             expected: None,
+            errors_in_variables: None,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,
             lower,

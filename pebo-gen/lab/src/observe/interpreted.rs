@@ -429,6 +429,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;
         let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
+        let observer = match &settings.errors_in_variables {
+            Some(sensors) => observer.with_errors_in_variables(&pad(sensors))?,
+            None => observer,
+        };
         let mut rows = [usize::MAX; N];
         rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
         let whole = settings.output && design.primitive.is_none();

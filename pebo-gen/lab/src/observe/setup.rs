@@ -21,6 +21,8 @@ pub(crate) struct Settings {
     pub(crate) output: bool,
     /// The indices of the rows' outputs, where estimates are made of the expected outputs.
     pub(crate) expected: Option<Vec<usize>>,
+    /// The standard deviations of the sensors, where their noise is in the factor of the unknown too.
+    pub(crate) errors_in_variables: Option<Vec<f64>>,
     /// The hold between samples.
     pub(crate) hold: Hold,
     pub(crate) estimator: Estimator,
@@ -123,6 +125,7 @@ impl Settings {
             },
             output: resolved.output,
             expected: resolved.expected,
+            errors_in_variables: resolved.errors_in_variables,
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
@@ -179,6 +182,7 @@ impl Settings {
             },
             output: settings.output,
             expected: settings.expected,
+            errors_in_variables: settings.errors_in_variables.as_deref().map(all),
             hold: if settings.straight { Hold::First } else { Hold::Zero },
             rebase: match &settings.rebase {
                 Some(written) => Some(Rebase::of(written.map(Rational::to_f64))?),

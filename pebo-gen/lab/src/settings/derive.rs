@@ -113,6 +113,9 @@ pub(super) fn derive(
         }
     };
     let noise = if adapts { noise } else { guess.iter().zip(noise).map(|(guess, noise)| guess + noise).collect() };
+    let of_sensors = || deviations.sensors.iter().map(|deviation| rounded(*deviation)).collect::<Option<Vec<_>>>();
+    let errors_in_variables =
+        if kind != ObserverKind::Filtered && formulas.is_noisy(plant) { Some(of_sensors()?) } else { None };
     let exact = exact(&operator, [&covariance, &noise, &guess]);
     let Some((operator, [start, process_noise, guess])) = exact else {
         problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
@@ -125,6 +128,7 @@ pub(super) fn derive(
         operator,
         output: kind == ObserverKind::Output,
         expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
+        errors_in_variables,
         straight: frame.straight,
         estimator: if adapts {
             Estimator::AdaptiveLeastSquares(covariance, guess)
@@ -341,6 +345,8 @@ struct Formulas {
     rates: Slopes,
     /// The derivatives of these slopes by the unknowns, for each row.
     curvatures: Vec<Expr>,
+    /// The same of the primitive.
+    held_curvatures: Vec<Expr>,
     /// The unknowns, by theta.
     unknowns: Slopes,
     eta: Vec<Symbol>,
@@ -406,6 +412,7 @@ impl Formulas {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
             flow,
             curvatures: rates[rates.len() - instants..].iter().flat_map(bent).collect(),
+            held_curvatures: held.iter().flat_map(bent).collect(),
             held: Slopes::new(plant, &held, &y),
             rates: driven,
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
@@ -431,6 +438,12 @@ impl Formulas {
         let start = self.unknowns.wide_variances(point, &roots(covariance))?;
         let noise = |variances: &[f64]| self.unknowns.variances(point, &roots(variances));
         Some([start, noise(drift)?, noise(sensed)?])
+    }
+
+    /// Tests whether the noise of sensors is in a factor of the unknown too.
+    fn is_noisy(&self, plant: &Plant) -> bool {
+        let is_zero = |slope: &Expr| plant.arena.is_zero(*slope);
+        !self.curvatures.iter().chain(&self.held_curvatures).all(is_zero)
     }
 
     /// The standard deviation of each row's samples.

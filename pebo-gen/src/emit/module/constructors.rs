@@ -208,6 +208,14 @@ impl Module<'_> {
                 (sampled, quote!(Tuned::with_regression(model, estimator, sampled, chi_0)))
             }
         };
+        let (sensors, built) = match &settings.errors_in_variables {
+            Some(sensors) => {
+                let sensors = sensors.iter().map(&mut one);
+                let list = quote!(let sensors = SVector::from([#(#sensors),*]););
+                (Some(list), quote!(#built?.with_errors_in_variables(&sensors)))
+            }
+            None => (None, built),
+        };
         let built = match &settings.rebase {
             Some(Rebase::Samples(samples)) => {
                 let samples = syn::LitInt::new(&samples.to_string(), proc_macro2::Span::call_site());
@@ -232,7 +240,7 @@ impl Module<'_> {
             }
             None => built,
         };
-        let last = quote!(#regression #chi_0 #built);
+        let last = quote!(#regression #chi_0 #sensors #built);
         let (model, errors) = if self.asked.is_empty() {
             (quote!(Self::new(parameters)), "A fault only where rounding moves a setting out of its range.")
         } else {
@@ -461,6 +469,9 @@ impl Module<'_> {
             Operator::Window(samples) => format!("window of {} samples", one(samples)),
             Operator::Sampled(deviations) => format!("samples of standard deviation {}", list(deviations)),
         });
+        parts.extend(settings.errors_in_variables.as_ref().map(|sensors| {
+            format!("each linearised at its likely outputs, with sensors of standard deviation {}", list(sensors))
+        }));
         parts.extend(settings.output.then(|| "output form".to_owned()));
         if !matches!(settings.operator, Operator::Sampled(_)) {
             parts.push(format!("{}-order hold", if settings.straight { "first" } else { "zero" }));
@@ -511,8 +522,8 @@ fn is_within(settings: &Settings<Rational>) -> bool {
 fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
     let Settings { operator, estimator, lower, upper, within: [least, greatest], chi_0, gate, limits, rebase, .. } =
         settings;
-    let mut numbers: Vec<&Rational> =
-        [lower, upper, least, greatest].into_iter().flatten().chain([chi_0]).flatten().chain(gate).collect();
+    let lists = [lower, upper, least, greatest, &settings.errors_in_variables].into_iter().flatten();
+    let mut numbers: Vec<&Rational> = lists.chain([chi_0]).flatten().chain(gate).collect();
     if let Some(Limits { outputs, inputs, gap }) = limits {
         numbers.extend(outputs.iter().chain(inputs).flatten().flatten().chain(gap));
     }

@@ -292,6 +292,7 @@ impl Reader<'_> {
                     operator,
                     output,
                     expected,
+                    errors_in_variables: None,
                     straight,
                     estimator,
                     lower,
@@ -315,6 +316,9 @@ fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
         ("with_process_noise", Made::Estimator(Estimator::LeastSquares(covariance)), Some(Made::List(noise)), None) => {
             let process_noise = Some(noise);
             Made::Estimator(Estimator::LeastSquares(Covariance { process_noise, ..covariance }))
+        }
+        ("with_errors_in_variables", Made::Observer(settings), Some(Made::List(sensors)), None) => {
+            Made::Observer(Box::new(Settings { errors_in_variables: Some(sensors), ..*settings }))
         }
         ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
             Made::Observer(Box::new(Settings { rebase: Some(Rebase::Samples(samples)), ..*settings }))

@@ -18,6 +18,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         operator,
         output: false,
         expected: None,
+        errors_in_variables: None,
         straight: true,
         estimator,
         lower: None,
@@ -166,6 +167,20 @@ fn the_output_form_may_expect_its_outputs() {
     let text = tuned(&given);
     assert!(text.contains("pub const ROWS: [usize; NR] = [0, 1];"), "{text}");
     assert!(text.contains("let model = OutputForm::expecting(model, ROWS)?;"), "{text}");
+}
+
+#[test]
+fn noise_in_the_factor_has_the_deviations_of_the_sensors() {
+    let given = Settings { errors_in_variables: Some(numbers(["0.1", "0.2"])), ..output_form() };
+    let text = tuned(&given);
+    let expected = [
+        "let sensors = SVector::from([0.1, 0.2]);",
+        "let observer = Tuned::with_regression(model, estimator, sampled, chi_0)?.with_errors_in_variables(&sensors)?;",
+        "observer.rebasing(1)",
+    ];
+    let found = statements(&text);
+    assert_eq!(found[found.len() - 3..], expected);
+    refuse_changed(&given, &[("[0.1, 0.2]", "[0.1, 0.3]"), (".with_errors_in_variables(&sensors)?", "")]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod angle;
 mod drift;
+mod errors_in_variables;
 mod functions;
 mod kinds;
 pub(crate) mod rebasing;
