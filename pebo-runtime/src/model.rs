@@ -35,7 +35,7 @@ pub enum Regression {
 /// | [`flow`](Self::flow) | `h`, `lambda` | at both ends of an interval |
 /// | [`regression`](Self::regression) | `phi_0`, `phi_1` | at both ends |
 /// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
-/// | [`output_slopes`](Self::output_slopes) | slopes of `phi_0` and `h` by outputs | at both ends, in the output form |
+/// | [`output_slopes`](Self::output_slopes) | slopes of the rates by outputs | at both ends, in the output form |
 /// | [`theta`](Self::theta) | `theta` from the estimate of `eta` | once for each sample |
 /// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to four times |
 /// | [`recover`](Self::recover) | `phi_left` | once for each sample |
@@ -90,12 +90,28 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         Sides { known: SVector::zeros(), factor: SMatrix::zeros() }
     }
 
-    /// The slopes of the rates by the outputs whose rates the regression has, for the [output form](crate::OutputForm),
-    /// which has these outputs among its states. By default there are none: measured outputs alone drive the model.
+    /// True if [`flow_near`](Self::flow_near) depends on the estimate.
+    const LINEARISED: bool = false;
+
+    /// The flow, for a model that linearises it in the noise of its outputs: at an estimate of `z`, which changes
+    /// nothing where the outputs are those of `z`. By default it is that of [`flow`](Self::flow).
+    fn flow_near(
+        &self,
+        terms: &Self::Terms,
+        u: &SVector<Self::Scalar, NU>,
+        _z: &SVector<Self::Scalar, NZ>,
+    ) -> Flow<Self::Scalar, NZ> {
+        self.flow(terms, u)
+    }
+
+    /// The slopes of the rates by the outputs whose rates the regression has, at an estimate of `z`, for the [output
+    /// form](crate::OutputForm), which has these outputs among its states. By default there are none: measured outputs
+    /// alone drive the model.
     fn output_slopes(
         &self,
         _terms: &Self::Terms,
         _u: &SVector<Self::Scalar, NU>,
+        _z: &SVector<Self::Scalar, NZ>,
     ) -> OutputSlopes<Self::Scalar, NR, NZ> {
         OutputSlopes { rates: SMatrix::zeros(), cascade: SMatrix::zeros() }
     }
@@ -186,9 +202,9 @@ pub struct Functions<S: Real, const NE: usize, const NZ: usize> {
 /// the sample. One that is the derivative of its rate keeps the sensor's noise out of that rate, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputSlopes<S: Real, const NR: usize, const NZ: usize> {
-    /// Those of the known side of the regression, in 1/s times the ratio of the outputs' units.
+    /// Those of the regression's, in 1/s times the ratio of the outputs' units.
     pub rates: SMatrix<S, NR, NR>,
-    /// Those of `h`, a column for each output.
+    /// Those of the cascade's, a column for each output.
     pub cascade: SMatrix<S, NZ, NR>,
 }
 

@@ -21,16 +21,16 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// with process noise and [re-basing](crate::Observer::rebasing) at each sample the observer is a Kalman filter of the
 /// transformed plant.
 ///
-/// Outputs in `A` and `h` are states of the observer too where the model gives their slopes, see
-/// [`Model::output_slopes`]: with `S_A` and `S_h`
+/// Outputs in the rates are states of the observer too where the model gives their slopes at its estimate, see
+/// [`Model::output_slopes`]: with `S_w` and `S_z`
 ///
 /// ```text
-/// w' = A - S_A p_0 + S_A (w - p_1 z) + B z        z' = Lambda z + h - S_h p_0 + S_h (w - p_1 z)
+/// w' = A + B z - S_w p_0 + S_w (w - p_1 z)        z' = Lambda z + h - S_z p_0 + S_z (w - p_1 z)
 /// ```
 ///
-/// which is the same along every trajectory, where `p_0 = w - p_1 z`, and free of the noise of `p_0` to first order.
-/// Where `A` and `h` are affine in the outputs with such slopes, and `B` and `Lambda` free of them, the observer is *the*
-/// continuous-discrete Kalman filter; elsewhere measured outputs drive the model.
+/// which is the same along every trajectory, where `p_0 = w - p_1 z`, whatever the estimate is, and free of the noise of
+/// `p_0` to first order where it is right. Where the rates are affine in the outputs with such slopes the observer is *the*
+/// continuous-discrete Kalman filter; near the truth it is the extended one, whose slopes these are.
 ///
 /// Sizes: `NW = NR - M::INSTANTS + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`,
 /// which has this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error
@@ -119,6 +119,7 @@ where
     type U = M::U;
     type Terms = Measured<M::Terms, M::Scalar, NY>;
     const REGRESSION: Regression = Regression::Static;
+    const LINEARISED: bool = true;
 
     fn periods(&self) -> SVector<M::Scalar, NY> {
         self.model.periods()
@@ -128,14 +129,23 @@ where
         Measured { terms: self.model.terms(y), y: *y }
     }
 
-    fn flow(&self, Measured { terms, .. }: &Self::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
+    fn flow(&self, terms: &Self::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
+        self.flow_near(terms, u, &SVector::zeros())
+    }
+
+    fn flow_near(
+        &self,
+        Measured { terms, .. }: &Self::Terms,
+        u: &SVector<M::Scalar, NU>,
+        z: &SVector<M::Scalar, NW>,
+    ) -> Flow<M::Scalar, NW> {
         const { assert!(NW + M::INSTANTS == NR + NZ, "the unknowns are those of the outputs with rates and those of z") };
         let inner = self.model.flow(terms, u);
         // At the extension's start `z = theta`: the regression is then known as a function of z.
         let start = M::Extension::new(SVector::zeros());
         let rate = self.model.regression(&start, terms, u);
         let held = self.model.primitive(&start, terms);
-        let slopes = self.model.output_slopes(terms, u);
+        let slopes = self.model.output_slopes(terms, u, &SVector::from_fn(|i, _| z[NW - NZ + i]));
         let known = rate.known - slopes.rates * held.known;
         let h = inner.h - slopes.cascade * held.known;
         let factor = rate.factor - slopes.rates * held.factor;

@@ -48,6 +48,7 @@ where
     type Terms = M::Terms;
     const REGRESSION: Regression = M::REGRESSION;
     const INSTANTS: usize = M::INSTANTS;
+    const LINEARISED: bool = M::LINEARISED;
 
     fn periods(&self) -> SVector<S, NY> {
         self.model.periods()
@@ -69,8 +70,12 @@ where
         self.model.primitive(extension, terms)
     }
 
-    fn output_slopes(&self, terms: &M::Terms, u: &SVector<S, NU>) -> OutputSlopes<S, NR, NZ> {
-        self.model.output_slopes(terms, u)
+    fn flow_near(&self, terms: &M::Terms, u: &SVector<S, NU>, z: &SVector<S, NZ>) -> Flow<S, NZ> {
+        self.model.flow_near(terms, u, z)
+    }
+
+    fn output_slopes(&self, terms: &M::Terms, u: &SVector<S, NU>, z: &SVector<S, NZ>) -> OutputSlopes<S, NR, NZ> {
+        self.model.output_slopes(terms, u, z)
     }
 
     fn theta(&self, eta: &SVector<S, NE>) -> SVector<S, NZ> {

@@ -139,10 +139,15 @@ impl<S: Real, const N: usize> Information<S, N> {
         }
         // A component that dies out is known ever better; the cap keeps its weight from overflowing, a fault for ever.
         let most = S::max_value().map_or(S::one() / S::EPSILON, |largest| largest * S::EPSILON);
-        if turned.weight.iter().any(|&weight| weight > most) {
-            (0..N).for_each(|i| turned.diffuse(i, S::one() / most));
-        }
+        turned.diffuse_beyond(&SVector::repeat(most));
         *self = turned;
+    }
+
+    /// Takes no component for known better than with its weight here, given those after it.
+    pub(crate) fn diffuse_beyond(&mut self, most: &SVector<S, N>) {
+        if self.weight.iter().zip(most.iter()).any(|(weight, most)| weight > most) {
+            (0..N).for_each(|i| self.diffuse(i, S::one() / most[i]));
+        }
     }
 
     /// Component `i` of `d` has moved by an unknown step of this variance, `variance >= 0`: the covariance gains it on

@@ -23,7 +23,7 @@ use crate::{Fault, Real, Turn};
 /// grows where there is no excitation, and nothing is forgotten that still holds.
 ///
 /// A [`turn`](Estimator::turn) of the unknown takes `P` to `T P T^T`; `R_0`, the limit of forgetting, and `Q` then
-/// apply to the unknown as it is now. Weights that a turn would take beyond the largest number are kept below it.
+/// apply to the unknown as it is now. No component becomes known better than the rounding of its deviation at the start.
 ///
 /// Method: `R` in the triangular form of [`Information`], the regressor held over the step: the past decays by
 /// `e^(-beta dt)`, `1 - e^(-beta dt)` of `R_0` flows in, then each equation is absorbed by a rotation. Nothing is
@@ -164,6 +164,8 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
     fn turn(&mut self, turn: &Turn<S, NE>) {
         self.theta.add(&turn.of_unknown(self.theta.value()));
         self.information.turn(turn);
+        // Where a component dies out faster than others, those known best and least would leave each other no digits.
+        self.information.diffuse_beyond(&(self.floor.weight() / (S::EPSILON * S::EPSILON)));
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {

@@ -142,7 +142,8 @@ where
     /// NaN. `rows` has for each row of the regression the index in `y` of its output.
     ///
     /// The rows of missing outputs are left out, and the model's functions get what the observer expects of these
-    /// outputs, so that nothing waits for them. The first sample must be whole.
+    /// outputs, so that nothing waits for them. All may be missing: the step is then a prediction. The first sample must be
+    /// whole.
     ///
     /// # Errors
     /// A [`Fault`] as of a step; [`Fault::Output`] of an output that is missing and has no row.

@@ -400,7 +400,13 @@ where
         let model = &self.model;
         let start = &self.state.extension;
         let mut end = *start;
-        end.advance(&model.flow(before, u_before), &model.flow(after, u_after), dt)?;
+        let (before_it, after_it) = if M::LINEARISED {
+            let z = start.coordinates(&self.theta());
+            (model.flow_near(before, u_before, &z), model.flow_near(after, u_after, &z))
+        } else {
+            (model.flow(before, u_before), model.flow(after, u_after))
+        };
+        end.advance(&before_it, &after_it, dt)?;
 
         let mut sides = [model.regression(start, before, u_before), model.regression(&end, after, u_after)];
         if M::REGRESSION == Regression::Dynamic {

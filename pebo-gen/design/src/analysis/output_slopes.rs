@@ -1,8 +1,9 @@
 //! Slopes of all rates by the outputs, for an observer that has these outputs among its states.
 //!
-//! In: the cascade, and a regression of rates of outputs. Out: the derivatives of the known terms of both by these
-//! outputs. With them the terms are linearised at each sample, so that to first order the noise of its sensors is in no
-//! rate; along every trajectory the linearised terms have the values of the terms themselves.
+//! In: the cascade, and a regression of rates of outputs. Out: the derivatives of both by these outputs, as functions of
+//! z. With them and an estimate of z the rates are linearised at each sample, so that to first order the noise of its
+//! sensors is in no rate; along every trajectory the linearised rates have the values of the rates themselves, whatever
+//! the estimate is.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,15 +13,15 @@ use pebo_cas::{Arena, Expr, Symbol};
 
 use super::design::{Cascade, Regression};
 
-/// Derivatives of the known terms of the rates by outputs; 0 where the known terms of a rate are not differentiable in the
-/// output wherever they have a value, so that no slope refuses a sample.
+/// Derivatives of the rates by outputs, at z; terms that are not differentiable in the output wherever they have a value
+/// are left out, so that no slope refuses a sample.
 #[derive(Clone, Debug)]
 pub struct OutputSlopes {
     /// The positions in the plant's outputs of those whose rates are the first rows of the regression.
     pub outputs: Vec<usize>,
-    /// The derivatives of `Phi_0` at the start of the extension, for each row of the regression; a column for each row.
+    /// Those of the regression's rates, for each of its rows; a column for each row.
     pub rates: Vec<Vec<Expr>>,
-    /// Those of `h`, for each component of the transform.
+    /// Those of the cascade's, for each component of the transform.
     pub cascade: Vec<Vec<Expr>>,
 }
 
@@ -29,23 +30,39 @@ impl OutputSlopes {
     pub fn of(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Self> {
         let arena = &plant.arena;
         let outputs = regression.outputs_with_rates(plant)?;
-        // The factors of the coordinates at the extension's start, where these are 0.
-        let start: BTreeMap<Symbol, Expr> = plant.chi.iter().chain(&plant.xi).map(|&c| (c, arena.zero())).collect();
-        let known = arena.substitute_all(&regression.phi_0, &start);
-        let equations = regression.phi_0.len();
-        let row = |rate: Expr, is_rate: bool| -> Vec<Expr> {
+        let (known, factor) = at_start(plant, regression);
+        let equations = known.len();
+        let row = |known: Expr, factor: &[Expr], is_rate: bool| -> Vec<Expr> {
             let slope = |column: usize| match outputs.get(column) {
-                Some(&output) if is_rate => slope(arena, rate, plant.y[output].symbol),
+                Some(&output) if is_rate => {
+                    let by = |rate: Expr| slope(arena, rate, plant.y[output].symbol);
+                    let terms = factor.iter().zip(&plant.z).map(|(f, z)| arena.mul(by(*f), arena.of_symbol(*z)));
+                    terms.fold(by(known), |sum, term| arena.add(sum, term))
+                }
                 _ => arena.zero(),
             };
             (0..equations).map(slope).collect()
         };
-        let rates = known.iter().enumerate().map(|(place, rate)| row(*rate, place < outputs.len())).collect();
-        let cascade = cascade.h.iter().map(|rate| row(*rate, true)).collect();
+        let rates = known.iter().zip(&factor).enumerate();
+        let rates = rates.map(|(place, (known, factor))| row(*known, factor, place < outputs.len())).collect();
+        let lambda = |place: usize| cascade.lambda.as_ref().map_or(&[][..], |lambda| lambda[place].as_slice());
+        let cascade = cascade.h.iter().enumerate().map(|(place, h)| row(*h, lambda(place), true)).collect();
         let found = Self { outputs, rates, cascade };
         let is_some = found.rates.iter().chain(&found.cascade).flatten().any(|slope| !arena.is_zero(*slope));
         is_some.then_some(found)
     }
+}
+
+/// The sides of a regression at the start of its extension, where the unknown is z.
+pub fn at_start(plant: &Plant, regression: &Regression) -> (Vec<Expr>, Vec<Vec<Expr>>) {
+    let arena = &plant.arena;
+    let identity = plant.psi.iter().enumerate().flat_map(|(i, row)| {
+        row.iter().enumerate().map(move |(j, s)| (*s, if i == j { arena.one() } else { arena.zero() }))
+    });
+    let zero = plant.chi.iter().chain(&plant.xi).map(|s| (*s, arena.zero()));
+    let start: BTreeMap<Symbol, Expr> = zero.chain(identity).collect();
+    let factor = regression.phi_1.iter().map(|row| arena.substitute_all(row, &start)).collect();
+    (arena.substitute_all(&regression.phi_0, &start), factor)
 }
 
 /// The derivative of a rate by an output, if it has one wherever the rate has a value; else 0.
@@ -78,13 +95,14 @@ mod tests {
     }
 
     #[test]
-    fn every_known_term_has_its_slope() {
+    fn every_term_has_its_slope() {
         let linear = of("f_x: {a: u - k*y}\nf_y: {y: a - u*y}\nphi: [a]").unwrap();
         assert_eq!(linear, ["-u", "-k"]);
         let curved = of("f_x: {a: sin(y)}\nf_y: {y: a + y^2}\nphi: [a]").unwrap();
         assert_eq!(curved, ["2*y", "cos(y)"]);
-        // What multiplies an unknown is none of the known terms.
-        assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + y^2)*a}\nphi: [a]"), None);
+        // So has what multiplies an unknown, at an estimate.
+        assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + y^2)*a}\nphi: [a]").unwrap(), ["2*y*z1", "0"]);
+        assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + u^2)*a}\nphi: [a]"), None);
     }
 
     #[test]
@@ -93,6 +111,8 @@ mod tests {
             let found = of(&format!("f_x: {{a: '{corner} - y'}}\nf_y: {{y: a - y}}\nphi: [a]\nassume: [\"y >= 0\"]"));
             assert_eq!(found.unwrap(), ["-1", "0"], "{corner}");
         }
+        // A factor with a corner takes none from the known terms.
+        assert_eq!(of("f_x: {a: u}\nf_y: {y: 'abs(y)*a - y'}\nphi: [a]").unwrap(), ["-1", "0"]);
         // Beside one of the input there is one.
         assert_eq!(of("f_x: {a: abs(u)*y}\nf_y: {y: a}\nphi: [a]").unwrap(), ["0", "abs(u)"]);
     }

@@ -321,7 +321,7 @@ impl<'a> LoopState<'a> {
         let hat = &mut after[..layout.hat.len()];
         let (u, step) = (&before[layout.u.clone()], self.scenario.timing.step);
         if !arrives {
-            self.driver.miss(u, step);
+            self.driver.miss(y.len(), u, step, hat);
             return Ok(());
         }
         // The sensor of an angle reads it within a turn.

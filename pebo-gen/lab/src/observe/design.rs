@@ -124,7 +124,10 @@ impl Design {
                 RegressionKind::Dynamic | RegressionKind::Static => None,
             },
             slopes: match OutputSlopes::of(plant, cascade, regression).filter(|_| settings.output) {
-                Some(slopes) => Some(compile(&at_sample, &[slopes.rates.concat(), slopes.cascade.concat()].concat())?),
+                Some(slopes) => Some(compile(
+                    &[&y, &plant.u, &plant.z],
+                    &[slopes.rates.concat(), slopes.cascade.concat()].concat(),
+                )?),
                 None => None,
             },
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,

@@ -1,8 +1,9 @@
 //! Drives an observer sample by sample, with missing samples bridged.
 //!
-//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. Missing and refused
-//! samples are bridged as on the target: the next sample covers the time since the last accepted one, with the mean of
-//! the inputs (the runtime's [`Gap`]). Independent of the source of samples.
+//! In: each interval with its input, and the outputs at its end if they are there. Out: estimates. An observer with
+//! outputs among its states goes on without a sample, with the outputs that it expects. Else, and where a sample is
+//! refused, the gap is bridged as on the target: the next sample covers the time since the last accepted one, with the
+//! mean of the inputs (the runtime's [`Gap`]). Independent of the source of samples.
 
 use pebo_runtime::{Fault, Gap};
 
@@ -122,10 +123,15 @@ impl ObserverDriver {
         self.started
     }
 
-    /// Takes an interval without a sample at its end.
-    pub(crate) fn miss(&mut self, u: &[f64], dt: f64) {
+    /// Takes an interval without a sample at its end, of so many outputs. An observer that may lack outputs goes on with
+    /// those that it expects, and writes its estimates; another waits for the next sample.
+    pub(crate) fn miss(&mut self, outputs: usize, u: &[f64], dt: f64, hat: &mut [f64]) {
         self.dropped += 1;
-        self.wait(u, dt);
+        let goes_on = self.started && self.gap.is_none() && self.observer.admits_partial();
+        let missing = vec![f64::NAN; outputs];
+        if !goes_on || self.observer.sample(&missing, u, dt, hat).is_err() {
+            self.wait(u, dt);
+        }
     }
 
     fn wait(&mut self, u: &[f64], dt: f64) {

@@ -152,6 +152,7 @@ impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
 #[derive(Debug)]
 struct Derived<X, K, const N: usize> {
     ny: usize,
+    inputs: usize,
     nz: usize,
     nr: usize,
     ne: usize,
@@ -182,6 +183,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             output: design.settings.output.then(|| (design.rates(), X::new(SVector::zeros()))),
             known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
+            inputs: design.inputs,
             nz: design.coordinates,
             nr: design.equations,
             ne: design.unknowns,
@@ -274,13 +276,21 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         *y
     }
 
+    const LINEARISED: bool = true;
+
     fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
+        self.flow_near(y, u, &SVector::zeros())
+    }
+
+    fn flow_near(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> Flow<f64, N> {
         let inner = self.cascade(y, u);
         let Some((rows, _)) = self.output else { return inner };
         // As the runtime's `OutputForm`, whose sizes are constants.
         let start = X::new(SVector::zeros());
         let (rate, held) = (self.sides(&start, y, u), self.primitive(&start, y));
-        let slopes = self.output_slopes(y, u);
+        let mut inner_z = SVector::zeros();
+        (0..self.nz).for_each(|i| inner_z[i] = z[rows + i]);
+        let slopes = self.output_slopes(y, u, &inner_z);
         let [known, rest] = [(rate.known, slopes.rates), (inner.h, slopes.cascade)].map(|(h, s)| h - s * held.known);
         let [factor, plain] =
             [(rate.factor, slopes.rates), (inner.lambda, slopes.cascade)].map(|(factor, s)| factor - s * held.factor);
@@ -297,12 +307,17 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         Flow { lambda, h }
     }
 
-    fn output_slopes(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> OutputSlopes<f64, N, N> {
+    fn output_slopes(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> OutputSlopes<f64, N, N> {
         let Some(slopes) = &self.slopes else {
             return OutputSlopes { rates: SMatrix::zeros(), cascade: SMatrix::zeros() };
         };
         let mut slopes = slopes.borrow_mut();
-        let mut values = slopes.evaluate(|place| if place < self.ny { y[place] } else { u[place - self.ny] });
+        let inputs = self.inputs;
+        let mut values = slopes.evaluate(|place| match place.checked_sub(self.ny) {
+            None => y[place],
+            Some(place) if place < inputs => u[place],
+            Some(place) => z[place - inputs],
+        });
         let rates = rows(&mut values.by_ref().take(self.nr * self.nr), self.nr);
         OutputSlopes { rates, cascade: rows(&mut values, self.nr) }
     }
@@ -407,6 +422,8 @@ struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize
     chi_0: SVector<f64, N>,
     /// The number of restarts.
     restarts: u64,
+    /// Seconds since the last sample with outputs.
+    waited: f64,
     /// The index of each row's output, where rows may be left out.
     rows: Option<[usize; N]>,
     /// The recovered states, and the rows of the regression.
@@ -446,6 +463,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             limits: settings.limits.as_ref().map(limits).transpose()?,
             chi_0: pad(&settings.chi_0),
             restarts: 0,
+            waited: 0.0,
             rows: whole.then_some(rows),
             sizes: (design.recovered.len(), design.equations),
             is_certain: design.predicts(),
@@ -538,7 +556,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         if let Some(limits) = &self.limits {
             // A missing output is in no range: it is left out, or refused for that.
             let present = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
-            match limits.check(&pad(&present), &pad(u), dt) {
+            match limits.check(&pad(&present), &pad(u), self.waited + dt) {
                 Err(Fault::Gap) => {
                     self.observer.restart(self.chi_0, &SVector::zeros())?;
                     self.restarts += 1;
@@ -560,6 +578,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         } else {
             self.step(y, parted, u, dt)?
         };
+        self.waited = if y.iter().all(|output| output.is_nan()) { self.waited + dt } else { 0.0 };
         hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
         Ok(())
     }

@@ -274,14 +274,15 @@ impl<const N: usize> Uncertainty<N> {
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
         let Interval { before, after, u, dt, z } = interval;
-        let flows = [model.flow(before, u), model.flow(after, u)];
+        let flows = [model.flow_near(before, u, z), model.flow_near(after, u, z)];
         let mut extension = Fundamental::<f64, N>::new(*z);
         let [first, last] = &flows;
         extension.advance(first, last, *dt)?;
         let of_errors = *extension.psi();
+        let estimate = z;
         let z = extension.xi();
         let rate = |y: &SVector<f64, N>| {
-            let Flow { lambda, h } = model.flow(y, u);
+            let Flow { lambda, h } = model.flow_near(y, u, estimate);
             lambda * z + h
         };
         let one = SMatrix::<f64, N, N>::identity();

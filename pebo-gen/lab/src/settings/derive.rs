@@ -9,7 +9,7 @@
 //! unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind};
+use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind, at_start};
 use pebo_design::model::{Decimal, Form, Model};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
@@ -406,7 +406,9 @@ impl Formulas {
         if let Some(slopes) = OutputSlopes::of(plant, cascade, regression).filter(|_| is_output) {
             let states: Vec<Symbol> = slopes.outputs.iter().map(|output| y[*output]).collect();
             flow = flow.without(plant, &slopes.cascade, &states);
-            driven = driven.without(plant, &slopes.rates, &states);
+            let (known, factor) = at_start(plant, regression);
+            let of_z = known.iter().zip(&factor).map(|(known, row)| arena.add(*known, times(row, &plant.z)));
+            driven = Slopes::new(plant, &of_z.collect::<Vec<_>>(), &y).without(plant, &slopes.rates, &states);
         }
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),

@@ -118,7 +118,7 @@ pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 9] = [
     ("flow", &[Y, U], &["h", "lambda"]),
     ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
     ("primitive", &[Extension, Y], &["primitive_0", "primitive_1"]),
-    (OUTPUT_SLOPES, &[Y, U], &[RATE_SLOPES, CASCADE_SLOPES]),
+    (OUTPUT_SLOPES, &[Y, U, Z], &[RATE_SLOPES, CASCADE_SLOPES]),
     ("theta", &[Eta], &["theta"]),
     (FUNCTIONS, &[Theta], &[ETA, SLOPES]),
     ("recover", &[Z, Y], &["phi_left"]),

@@ -389,7 +389,7 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
              estimate, and their derivatives, written by columns: one for each component of `theta`."
         }
         OUTPUT_SLOPES => {
-            "The derivatives of `phi_0` and `h` by the outputs whose rates the regression has: an observer in output form has \
+            "The derivatives of the rates by the outputs whose rates the regression has, at `z`: an observer in output form has \
              these outputs among its states. Written by columns, one for each of them."
         }
         PERIODS => "The periods of the outputs that are angles, 0 for the others: the observer counts their turns.",

@@ -158,13 +158,13 @@ impl Model<2, 1, 1, 2, 1, 2> for Driven {
     }
     fn regression(&self, extension: &Self::Extension, y: &Vector1<f64>, u: &Vector1<f64>) -> Sides<f64, 1, 2> {
         let seen = SMatrix::<f64, 1, 2>::new(1.0, 0.0);
-        let known = self.output_slopes(y, u).rates * y + seen * extension.xi();
+        let known = self.output_slopes(y, u, &Vector2::zeros()).rates * y + seen * extension.xi();
         Sides { known, factor: seen * extension.psi() }
     }
     fn primitive(&self, _: &Self::Extension, y: &Vector1<f64>) -> Sides<f64, 1, 2> {
         Sides { known: *y, factor: SMatrix::zeros() }
     }
-    fn output_slopes(&self, _: &Vector1<f64>, u: &Vector1<f64>) -> OutputSlopes<f64, 1, 2> {
+    fn output_slopes(&self, _: &Vector1<f64>, u: &Vector1<f64>, _: &Vector2<f64>) -> OutputSlopes<f64, 1, 2> {
         OutputSlopes { rates: SMatrix::from([[-0.5 - 0.1 * u.x]]), cascade: Vector2::new(-2.0, -1.0) }
     }
     fn theta(&self, eta: &Vector2<f64>) -> Vector2<f64> {

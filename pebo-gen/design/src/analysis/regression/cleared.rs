@@ -57,15 +57,14 @@ fn as_written(plant: &Plant, everywhere: &Domain, form: Expr) -> Option<Row> {
 /// The identities as equations between z, y and u: in a form that is affine in z, else in one with separable terms,
 /// else as written; without a left inverse, those that are affine.
 pub(super) fn in_z(premises: &Premises<'_>) -> Vec<Equation> {
-    let arena = premises.arena();
     let mut found: Vec<Equation> = Vec::new();
     for identity in &premises.plant.identities {
         for rate in forms_in_z(premises, identity.expr) {
             // A bearing under `g_y` and the same written as an identity.
-            let outputs = outputs_of(premises.plant, identity);
-            match found.iter_mut().find(|known| known.rate == rate || known.rate == arena.neg(rate)) {
-                Some(known) => known.outputs.extend(outputs),
-                None => found.push(Equation::instant(premises, rate, outputs)),
+            let equation = Equation::instant(premises, rate, outputs_of(premises.plant, identity));
+            match found.iter_mut().find(|known| known.is_same(&equation, premises)) {
+                Some(known) => known.outputs.extend(equation.outputs),
+                None => found.push(equation),
             }
         }
     }

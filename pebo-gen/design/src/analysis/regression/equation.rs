@@ -3,6 +3,7 @@
 use super::premises::Premises;
 use crate::plant::{Formula, Output, Plant};
 use pebo_cas::Expr;
+use pebo_cas::domain::zero::decide;
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z. Without a primitive
 /// it is a relation that holds at every instant.
@@ -36,6 +37,19 @@ impl Equation {
 
     pub(super) fn is_instant(&self, premises: &Premises<'_>) -> bool {
         premises.arena().is_zero(self.primitive)
+    }
+
+    /// Tests whether two equations are one, perhaps with the other sign: counted twice, the sensors would seem better.
+    pub(super) fn is_same(&self, other: &Self, premises: &Premises<'_>) -> bool {
+        if self.primitive != other.primitive {
+            return false;
+        }
+        if !self.is_instant(premises) || self.rate == other.rate {
+            return true;
+        }
+        let (arena, everywhere) = (premises.arena(), premises.domain.without_equations());
+        let is_zero = |expr: Expr| decide(arena, expr, &everywhere).is_zero();
+        is_zero(arena.sub(self.rate, other.rate)) || is_zero(arena.add(self.rate, other.rate))
     }
 
     pub(super) fn is_linear(&self) -> bool {

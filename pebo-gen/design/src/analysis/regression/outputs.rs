@@ -38,12 +38,14 @@ pub(super) fn completed(pool: &Pool<'_>, mut given: Trial) -> Trial {
         value(premises, output).map_or_else(|| curved.push(output), |equation| values.push(equation));
     }
     values.extend(combined_values(pool, &curved));
-    // A combination stands for its last output, which is in no other one.
+    // A combination stands for its last output, which is in no other one. An identity may say what a value says.
     let stands_for = |value: &Equation, equation: &Equation| {
         value.outputs == equation.outputs || value.outputs.last().is_some_and(|last| equation.outputs == [*last])
     };
+    let is_another = |equation: &&Equation| !values.iter().any(|value| value.is_same(equation, premises));
     let is_kept = |equation: &&Equation| !values.iter().any(|value| stands_for(value, equation));
-    let mut kept = vec![given.equations.iter().filter(is_kept).cloned().collect(), given.equations.clone()];
+    let others: Vec<Equation> = given.equations.iter().filter(is_another).cloned().collect();
+    let mut kept = vec![others.iter().filter(is_kept).cloned().collect(), others];
     // Without the rates of outputs that are given by value, then with them.
     kept.truncate(1 + usize::from(!values.is_empty()));
     if !values.is_empty() || !added.is_empty() {

@@ -146,9 +146,7 @@ impl<'a> Pool<'a> {
             complete &= are_all;
             rest.extend(instants);
         }
-        let is_same =
-            |a: &Equation, b: &Equation| a.primitive == b.primitive && (!a.is_instant(premises) || a.rate == b.rate);
-        rest.retain(|equation| !given.iter().any(|given| is_same(given, equation)));
+        rest.retain(|equation| !given.iter().any(|given| given.is_same(equation, premises)));
         Rest { equations: rest, complete }
     }
 

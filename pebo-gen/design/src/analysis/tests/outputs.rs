@@ -171,3 +171,14 @@ fn a_turn_that_the_assumptions_decide_is_named_with_the_period_to_declare() {
     let (_, declared) = derive(&plant("assume: [-1 < b < 1]\nangles: {b: 2*pi}"));
     assert_eq!(declared.outcome, Outcome::Accepted);
 }
+
+#[test]
+fn an_identity_that_says_what_a_value_says_is_counted_once() {
+    let plant = "x: [px, py, vx, vy]\ny: [r, be]\nassume: [px > 0]\nf_x: {px: vx, py: vy, vx: 0, vy: 0}\n\
+                 phi: [px, py, vx, vy]\nidentities: [r - px*cos(be) - py*sin(be)]\n\
+                 g_y: {r: sqrt(px^2 + py^2), be: \"atan2(py, px)\"}";
+    let (_, derivation) = derive(plant);
+    assert_eq!(derivation.outcome, Outcome::Accepted, "{:?}", derivation.diagnostics);
+    // The distance and the bearing, and no third.
+    assert_eq!(derivation.regression.result.unwrap().sources.len(), 2);
+}
