@@ -101,18 +101,18 @@ PERIODS = {"q": 2 * 3.141592653589793 / 5}
 
 
 def simulate(model, settings, arguments):
-    """The output of a run and its report."""
+    """The output of a run: its summary, or the table that is asked for."""
     command = [str(ROOT / "target/release/pebo-gen"), "simulate", str(ROOT / f"models/{model}.yaml"), *arguments]
     for name, value in settings.items():
         command += ["--set", f"{name}={value}"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout, done.stderr
+    return done.stdout
 
 
 def largest(model):
     """The largest absolute value of each state."""
     settings = {f"simulation.{key}": value for key, value in COMMON[model].items()}
-    _, out, _ = simulate(model, settings | {"simulation.baselines": "{}"}, ["--csv", "-", "--feedback", "truth"])
+    out = simulate(model, settings | {"simulation.baselines": "{}"}, ["--csv", "-", "--feedback", "truth"])
     rows = list(csv.DictReader(io.StringIO(out)))
     states = [name.removesuffix("_hat") for name in rows[0] if name.endswith("_hat")]
     return {s: PERIODS.get(s) or max(abs(float(row[s])) for row in rows) for s in states}
@@ -168,7 +168,7 @@ def table(model, runs):
                 of_run["simulation.baselines"] = "{}"
             calls[name, condition] = (of_run, ["--feedback", "truth", "--runs", str(runs if chance else 1)])
     with ThreadPoolExecutor(2) as pool:
-        reports = dict(zip(calls, pool.map(lambda call: simulate(model, *call)[2], calls.values()), strict=True))
+        reports = dict(zip(calls, pool.map(lambda call: simulate(model, *call), calls.values()), strict=True))
     yield f"| {model} | " + " | ".join(CONDITIONS[model]) + " |"
     yield "|---" * (1 + len(CONDITIONS[model])) + "|"
     first = next(iter(OBSERVERS[model]))

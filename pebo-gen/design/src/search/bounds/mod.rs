@@ -98,6 +98,11 @@ pub enum BoundClass {
     AffineRate,
 }
 
+/// The bound of the transforms affine in x with a plain or generalised cascade, at a point that is found after so many.
+pub(super) fn affine_rates(problem: &Problem<'_>, others: usize) -> Option<Bound> {
+    bound(problem, BoundClass::AffineRate, (LARGEST_ORDER, others))
+}
+
 /// Bounds the rank of transforms of one class by series to this order, at the first point that is found or after so
 /// many others; none where no point was found, or the equations are too many. Where identities hold, a rate has to be
 /// free of x on them alone, and nothing is said.
