@@ -51,10 +51,19 @@ impl OutputSlopes {
         let is_some = found.rates.iter().chain(&found.cascade).flatten().any(|slope| !arena.is_zero(*slope));
         is_some.then_some(found)
     }
+
+    /// Those of the terms without unknowns.
+    #[must_use]
+    pub fn of_known_terms(&self, plant: &Plant) -> Self {
+        let arena = &plant.arena;
+        let start: BTreeMap<Symbol, Expr> = plant.z.iter().map(|z| (*z, arena.zero())).collect();
+        let at = |rows: &[Vec<Expr>]| rows.iter().map(|row| arena.substitute_all(row, &start)).collect();
+        Self { outputs: self.outputs.clone(), rates: at(&self.rates), cascade: at(&self.cascade) }
+    }
 }
 
 /// The sides of a regression at the start of its extension, where the unknown is z.
-pub fn at_start(plant: &Plant, regression: &Regression) -> (Vec<Expr>, Vec<Vec<Expr>>) {
+fn at_start(plant: &Plant, regression: &Regression) -> (Vec<Expr>, Vec<Vec<Expr>>) {
     let arena = &plant.arena;
     let identity = plant.psi.iter().enumerate().flat_map(|(i, row)| {
         row.iter().enumerate().map(move |(j, s)| (*s, if i == j { arena.one() } else { arena.zero() }))

@@ -5,11 +5,11 @@
 //! ```
 //!
 //! of which the diagonals are taken. Samples drive the cascade where their outputs are no states of the observer: the noise
-//! of their sensors is process noise too, and `D_y z'` is without the slopes of the output form. For a regression whose
+//! of their sensors is process noise too, and `D_y z'` is without the slopes of known terms in the output form. For a regression whose
 //! unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind, at_start};
+use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind};
 use pebo_design::model::{Decimal, Form, Model};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
@@ -113,9 +113,6 @@ pub(super) fn derive(
         }
     };
     let noise = if adapts { noise } else { guess.iter().zip(noise).map(|(guess, noise)| guess + noise).collect() };
-    let of_sensors = || deviations.sensors.iter().map(|deviation| rounded(*deviation)).collect::<Option<Vec<_>>>();
-    let errors_in_variables =
-        if kind != ObserverKind::Filtered && formulas.is_noisy(plant) { Some(of_sensors()?) } else { None };
     let exact = exact(&operator, [&covariance, &noise, &guess]);
     let Some((operator, [start, process_noise, guess])) = exact else {
         problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
@@ -128,7 +125,7 @@ pub(super) fn derive(
         operator,
         output: kind == ObserverKind::Output,
         expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
-        errors_in_variables,
+        errors_in_variables: formulas.errors_in_variables(plant, kind, &deviations.sensors),
         straight: frame.straight,
         estimator: if adapts {
             Estimator::AdaptiveLeastSquares(covariance, guess)
@@ -402,13 +399,14 @@ impl Formulas {
             slopes.collect::<Vec<_>>()
         };
         let [mut flow, mut driven] = [&flow, &rates].map(|formulas| Slopes::new(plant, formulas, &y));
-        // Outputs that are states of the observer drive it as such, not by their samples.
+        // Outputs that are states of the observer drive it as such, not by their samples. What multiplies an unknown is
+        // rid of noise only as far as the unknown is known: its noise still counts as drift, and stands for what is lost
+        // between samples too.
         if let Some(slopes) = OutputSlopes::of(plant, cascade, regression).filter(|_| is_output) {
             let states: Vec<Symbol> = slopes.outputs.iter().map(|output| y[*output]).collect();
+            let slopes = slopes.of_known_terms(plant);
             flow = flow.without(plant, &slopes.cascade, &states);
-            let (known, factor) = at_start(plant, regression);
-            let of_z = known.iter().zip(&factor).map(|(known, row)| arena.add(*known, times(row, &plant.z)));
-            driven = Slopes::new(plant, &of_z.collect::<Vec<_>>(), &y).without(plant, &slopes.rates, &states);
+            driven = driven.without(plant, &slopes.rates, &states);
         }
         Some(Self {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
@@ -442,10 +440,12 @@ impl Formulas {
         Some([start, noise(drift)?, noise(sensed)?])
     }
 
-    /// Tests whether the noise of sensors is in a factor of the unknown too.
-    fn is_noisy(&self, plant: &Plant) -> bool {
-        let is_zero = |slope: &Expr| plant.arena.is_zero(*slope);
-        !self.curvatures.iter().chain(&self.held_curvatures).all(is_zero)
+    /// The standard deviations of the sensors, where their noise is in a factor of the unknown of samples too.
+    fn errors_in_variables(&self, plant: &Plant, kind: ObserverKind, sensors: &[f64]) -> Option<Vec<Rational>> {
+        let mut curvatures = self.curvatures.iter().chain(&self.held_curvatures);
+        let is_noisy = curvatures.any(|slope| !plant.arena.is_zero(*slope));
+        let deviations = || sensors.iter().map(|deviation| rounded(*deviation)).collect();
+        if is_noisy && kind != ObserverKind::Filtered { deviations() } else { None }
     }
 
     /// The standard deviation of each row's samples.
