@@ -6,7 +6,6 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::errors_in_variables::Taken;
 use super::{Observer, check, constrained};
 use crate::estimator::Information;
 use crate::extension::Extension;
@@ -181,7 +180,6 @@ where
         check(&y, &u, dt)?;
         let terms = self.model.terms(&y);
         let (extension, regression) = self.propagate([before, &terms], [&u, &u], dt)?;
-        let sample = Taken { y: &y, u: &u, dt, left_out };
-        self.finish((extension, regression.without(&left_out)), terms, &sample).map(M::X::from)
+        self.finish((extension, regression.without(&left_out)), terms, (&y, &u, dt), &left_out).map(M::X::from)
     }
 }

@@ -5,8 +5,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Observer;
-use super::rebasing::StepOf;
+use super::rebasing::{StepOf, Turn};
+use super::{Next, Observer, State};
 use crate::numeric::sum::all_finite;
 use crate::{Estimator, Fault, Model, Real, RegressionOperator, Sides, Uncertain};
 
@@ -88,7 +88,23 @@ where
         if !sensors.iter().all(is_deviation) {
             return Err(Fault::Gain);
         }
-        Ok(Self { correction: Some((*sensors, Self::corrected)), ..self })
+        // The end of a step that is re-based corrects too.
+        let rebasing = self.rebasing.or(Some((Turn::Never, Self::end_corrected)));
+        Ok(Self { correction: Some((*sensors, Self::corrected)), rebasing, ..self })
+    }
+
+    /// The end of a step without re-basing.
+    fn end_corrected(
+        &mut self,
+        _: Turn<M::Scalar>,
+        led: (M::Extension, R::Step),
+        terms: M::Terms,
+        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let Next { extension, regression, estimator } = self.next(led, sample)?;
+        let mut moved = State { extension, estimator, ..self.state.clone() };
+        moved.regression.take(regression);
+        self.keep(moved, terms, sample.y)
     }
 
     /// The regression after a step, linearised anew; none where that has no value.

@@ -70,8 +70,8 @@ pub struct Observer<
     state: State<M::Scalar, M::Extension, R, E, NY>,
     /// The terms of the last accepted sample; there if and only if that sample is.
     terms: Option<M::Terms>,
-    /// The trigger of re-basing, if there is one, and the end of a step that does so. That end is compiled only where
-    /// re-basing is asked for, and the rest of a step without it has no second caller.
+    /// The end of a step that is re-based or corrected, with its trigger. That end is compiled only where either is asked
+    /// for, and the rest of a step without it has no second caller.
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
     /// The standard deviations of the sensors and the correction by them, where their noise is in the factor too.
     correction: Option<Correction<Self, M, E, R, NX, NY, NU, NZ, NR, NE>>,
@@ -262,7 +262,7 @@ where
             return self.begin(terms, y);
         };
         let (extension, regression) = self.propagate([before, &terms], u, dt)?;
-        self.finish((extension, regression), terms, &Taken { y, u: u[1], dt, left_out: [false; NR] })
+        self.finish((extension, regression), terms, (y, u[1], dt), &[false; NR])
     }
 
     /// The end of a step, from extension and regression at the end of the interval.
@@ -271,18 +271,24 @@ where
         &mut self,
         (extension, regression): (M::Extension, R::Step),
         terms: M::Terms,
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        (y, u, dt): (&SVector<M::Scalar, NY>, &SVector<M::Scalar, NU>, M::Scalar),
+        left_out: &[bool; NR],
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         // Handed over as a copy, so that both may stay in registers where there is no re-basing.
         if let Some((turn, end)) = self.rebasing {
-            return end(self, turn, (extension, regression), terms, sample);
+            let sample = Taken { y, u, dt, left_out: *left_out };
+            return end(self, turn, (extension, regression), terms, &sample);
         }
-        let next = self.next((extension, regression), sample)?;
-        self.accept(next, terms, sample.y)
+        let mut estimator = self.state.estimator.clone();
+        estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
+        let model = &self.model;
+        estimator.constrain(|eta, information| {
+            constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
+        });
+        self.accept(Next { extension, regression, estimator }, terms, y)
     }
 
     /// What a step leads to, from extension and regression at the end of the interval.
-    #[inline]
     fn next(
         &self,
         (extension, regression): (M::Extension, R::Step),
@@ -295,7 +301,6 @@ where
     }
 
     /// The estimator after a sample, from the one before it; and the regression in which it is corrected, where it is.
-    #[inline]
     fn estimated(
         &self,
         before: E,
@@ -317,7 +322,6 @@ where
     }
 
     /// The estimator after equations at the end of `dt` seconds, among the values of functions of theta.
-    #[inline]
     fn learned(&self, mut estimator: E, equations: &Sides<M::Scalar, NR, NE>, dt: M::Scalar) -> Result<E, Fault> {
         estimator.advance(&equations.factor, &equations.known, dt)?;
         let model = &self.model;

@@ -13,6 +13,8 @@ use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionO
 /// The trigger of re-basing.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn<S: Real> {
+    /// None: the step is corrected alone.
+    Never,
     /// This number of samples since the last time.
     Samples(u32),
     /// The size of the extension.
@@ -221,6 +223,10 @@ where
             if moved.regression.regressor().iter().any(|&entry| Real::abs(entry) > most) {
                 moved.regression.reset();
             }
+        }
+        if self.correction.is_none() {
+            moved.estimator.advance(&moved.regression.regressor(), &moved.regression.regressand(), sample.dt)?;
+            return self.keep(moved, terms, sample.y);
         }
         let State { extension, regression, estimator, .. } = moved;
         let equations = Sides { known: regression.regressand(), factor: regression.regressor() };
