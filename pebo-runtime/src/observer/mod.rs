@@ -281,10 +281,7 @@ where
         }
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
-        let model = &self.model;
-        estimator.constrain(|eta, information| {
-            constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
-        });
+        self.constrain(&mut estimator);
         self.accept(Next { extension, regression, estimator }, terms, y)
     }
 
@@ -324,11 +321,17 @@ where
     /// The estimator after equations at the end of `dt` seconds, among the values of functions of theta.
     fn learned(&self, mut estimator: E, equations: &Sides<M::Scalar, NR, NE>, dt: M::Scalar) -> Result<E, Fault> {
         estimator.advance(&equations.factor, &equations.known, dt)?;
+        self.constrain(&mut estimator);
+        Ok(estimator)
+    }
+
+    /// Takes the estimate to the values of functions of theta.
+    #[inline]
+    fn constrain(&self, estimator: &mut E) {
         let model = &self.model;
         estimator.constrain(|eta, information| {
             constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
         });
-        Ok(estimator)
     }
 
     /// Takes the first sample, which has no interval behind it.
