@@ -120,13 +120,13 @@ pub use interface::{INTERFACE, emitted_for};
 pub use model::{Functions, Model, OutputSlopes, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
 pub use numeric::{Real, Sum};
-pub use observer::{Innovation, Observer, State};
+pub use observer::{Innovation, Late, LateObserver, Observer, State};
 pub use output_form::{Measured, OutputForm};
 pub use regression::{
     Filter, Filtered, FilteredRegression, Hold, Moved, Outcome, RegressionOperator, Rows, SampledRegression, Sides,
     Weights, WindowedRegression,
 };
-pub use samples::{Gap, Gate, Limits, unwrapped};
+pub use samples::{Arrivals, Gap, Gate, Instant, Limits, unwrapped};
 pub use within::Within;
 
 /// The package's front page, whose example is a test.

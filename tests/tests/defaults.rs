@@ -146,6 +146,29 @@ fn without_a_sample_the_observer_goes_on_as_a_kalman_filter_does() {
     }
 }
 
+#[test]
+fn a_late_sample_counts_for_the_time_that_it_is_of() {
+    // Ten samples of an oscillation of the duty cycle are 64: a filter that is not told sees another phase.
+    let moving = CUK.replace("control: {d: 0.5}", "control: {d: 0.5 + 0.2*sin(1e4*t)}").replace("2e-3", "1e-2");
+    let kalman = "  baselines: {kalman: {start: {i1: 2, i3: 2}, disturbance: {i1: 0, i3: 0}}}\n";
+    let late = moving.replace("observer: {", "observer: {delay: {v4: 1e-4}, ");
+    let [on_time, late, untold] = [
+        run(&format!("{moving}{kalman}"), 1),
+        run(&format!("{late}{kalman}"), 1),
+        run(&format!("{moving}  delay: {{v4: 1e-4}}\n"), 1),
+    ];
+    for state in 0..2 {
+        let rms = |summary: &Summary, estimate: usize| summary.estimates[estimate].score.rms;
+        let [on_time, told, untold, kalman] =
+            [rms(&on_time, state), rms(&late, state), rms(&untold, state), rms(&late, state + 2)];
+        // Two noises of a thousand samples: their errors differ by some tenths, and ten samples fewer are told.
+        assert!(told < 1.5 * on_time, "{state}: {told} {on_time} {}", late.text());
+        assert!(untold > 3.0 * told && kalman > 3.0 * told, "{state}: {told} {untold} {kalman}");
+    }
+    let surprise = late.surprise.unwrap();
+    assert!((surprise - 1.0).abs() < 0.2, "{}", late.text());
+}
+
 /// Case I of the Cuk converter at a duty cycle that changes, with sensors of known noise.
 const CUK: &str = "
 model: cuk

@@ -45,7 +45,7 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
         let head = head(&mut recording).map_err(|error| unreadable(&options.data, &error))?;
         match fitted(options, limit, (&name, &head)) {
             Ok(Some(found)) => {
-                settings.extend(found.parts().map(|(key, value)| format!("observer.{key}={value}")));
+                settings.extend(found.parts().iter().map(|(key, value)| format!("observer.{key}={value}")));
                 section = found.section();
             }
             Ok(None) => {}

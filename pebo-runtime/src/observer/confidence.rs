@@ -24,6 +24,13 @@ pub struct Innovation<S: Real, const NR: usize> {
     pub determinant: S,
 }
 
+impl<S: Real, const NR: usize> Innovation<S, NR> {
+    /// That of no sample, where nothing is expected.
+    pub(super) fn nothing() -> Self {
+        Self { value: SVector::zeros(), normalised_square: S::zero(), determinant: S::one() }
+    }
+}
+
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
     Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
 where
@@ -84,13 +91,7 @@ where
     ) -> Result<Innovation<M::Scalar, NR>, Fault> {
         let (y, u) = (y.into().into(), u.into().into());
         check(&y, &u, dt)?;
-        let Some(before) = &self.terms else {
-            return Ok(Innovation {
-                value: SVector::zeros(),
-                normalised_square: nalgebra::zero(),
-                determinant: nalgebra::one(),
-            });
-        };
+        let Some(before) = &self.terms else { return Ok(Innovation::nothing()) };
         let terms = self.model.terms(&self.unwrapped(&y));
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
         let regressor = outcome.regressor();
@@ -153,33 +154,46 @@ where
         u: impl Into<M::U>,
         dt: M::Scalar,
     ) -> Result<M::X, Fault> {
-        let (mut y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
-        let missing = y.map(|output| !Real::is_finite(output));
-        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
-            check(&y, &u, dt)?;
-            return self.advance(&y, [&u, &u], dt).map(M::X::from);
-        };
-        if let Some(index) = (0..NY).find(|output| missing[*output] && !rows.contains(output)) {
+        let (y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
+        let is_missing = |output: &usize| y.get(*output).is_some_and(|output| !Real::is_finite(*output));
+        if let Some(index) = (0..NY).find(|output| is_missing(output) && !rows.contains(output)) {
             return Err(Fault::Output { index });
         }
+        self.step_lacking(y, (rows, &[true; NY]), &u, dt).map(M::X::from)
+    }
+
+    /// The same; in place of a missing output that is not expected by its row the last one stands.
+    pub(super) fn step_lacking(
+        &mut self,
+        mut y: SVector<M::Scalar, NY>,
+        (rows, is_expected): (&[usize; NR], &[bool; NY]),
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
+            check(&y, u, dt)?;
+            return self.advance(&y, [u, u], dt);
+        };
+        let missing = y.map(|output| !Real::is_finite(output));
         // The last sample's, then the model's prediction from it.
         (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
         y = self.unwrapped(&y);
-        check(&y, &u, dt)?;
-        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        check(&y, u, dt)?;
+        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [u, u], dt)?;
         let (regressand, regressor) = (Outcome::regressand(&outcome), Outcome::regressor(&outcome));
         let error = regressand - regressor * self.state.estimator.estimate();
         let weights = outcome.weights(dt);
         let mut left_out = [false; NR];
-        for (row, &output) in rows.iter().enumerate() {
-            if output < NY && missing[output] {
+        for (row, &output) in rows.iter().enumerate().filter(|(_, output)| **output < NY && missing[**output]) {
+            left_out[row] = true;
+            // By the first of its rows.
+            if is_expected[output] && !rows.iter().take(row).any(|before| *before == output) {
                 y[output] -= error[row] / weights[row];
-                left_out[row] = true;
             }
         }
-        check(&y, &u, dt)?;
+        check(&y, u, dt)?;
         let terms = self.model.terms(&y);
-        let (extension, regression) = self.propagate([before, &terms], [&u, &u], dt)?;
-        self.finish((extension, regression.without(&left_out)), terms, (&y, &u, dt), &left_out).map(M::X::from)
+        let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
+        self.finish((extension, regression.without(&left_out)), terms, (&y, u, dt), &left_out)
     }
 }

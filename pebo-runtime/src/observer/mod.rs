@@ -3,6 +3,7 @@
 mod confidence;
 mod constrained;
 mod errors_in_variables;
+mod late;
 mod rebasing;
 
 use nalgebra::{SMatrix, SVector};
@@ -13,6 +14,7 @@ use crate::regression::{Outcome as _, Sides};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator, unwrapped};
 pub use confidence::Innovation;
 use errors_in_variables::{Correction, Led, Taken};
+pub use late::{Late, LateObserver};
 use rebasing::Rebasing;
 
 /// A parameter-estimation-based observer.
@@ -438,6 +440,19 @@ where
         self.model.recover(&self.state.extension.coordinates(&self.theta()), terms)
     }
 }
+
+/// The state of a model's observer.
+pub(crate) type StateOf<
+    M,
+    E,
+    R,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+> = State<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, <M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, R, E, NY>;
 
 /// The state after an interval, before it is accepted.
 struct Next<X, R, E> {

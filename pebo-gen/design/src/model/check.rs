@@ -38,6 +38,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
         pass.belong(&model.observer.sensors, &y, "sensors");
+        pass.belong(&model.observer.delay.each, &y, "delay");
         pass.belong(&model.observer.start, &x, "start");
         pass.belong(&model.observer.disturbance, &both, "disturbance");
         pass.belong(&model.observer.wanted, &x, "wanted");
@@ -79,6 +80,9 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     pass.inverted(model);
     pass.measured(model);
     pass.known(&model.observer.sensors, [&model.observer.start, &model.observer.disturbance]);
+    for delay in model.observer.delay.written() {
+        pass.not_negative(delay, "a delay");
+    }
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, (&model.u, &model.w));

@@ -10,6 +10,7 @@
 mod check;
 pub mod class;
 mod definitions;
+mod delay;
 pub mod formula;
 mod names;
 mod observer;
@@ -27,6 +28,7 @@ mod tests;
 
 pub use check::check;
 pub use class::{Class, Electromechanical, Lti, Matrix, Mechanical};
+pub use delay::Delay;
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub(crate) use names::derivative_of;
 pub use names::unknown_name;
@@ -34,7 +36,7 @@ pub use observer::{Bounds, Estimator, Form, Hold, Observer, Rebase};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{
-    Baseline, CascadeClass, Delay, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
+    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
 };
 
 #[cfg(feature = "yaml")]
@@ -65,6 +67,16 @@ impl Model {
         }
         diagnostics.propagate()?;
         // Without a model there is an error, which was propagated.
-        model.map(Self::ordered).map(Self::timed).ok_or_else(Vec::new)
+        model.map(Self::ordered).map(Self::timed).map(Self::late).ok_or_else(Vec::new)
+    }
+
+    /// The model with sensors that are as late in a simulation as its observer knows them to be, unless the simulation
+    /// says otherwise.
+    fn late(mut self) -> Self {
+        let known = &self.observer.delay;
+        if let Some(simulation) = self.simulation.as_mut().filter(|simulation| simulation.delay.span().is_none()) {
+            simulation.delay.clone_from(known);
+        }
+        self
     }
 }

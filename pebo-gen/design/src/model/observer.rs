@@ -3,6 +3,7 @@
 #[cfg(feature = "yaml")]
 use serde::Deserialize;
 
+use super::delay::Delay;
 use super::formula::Decimal;
 use super::spanned::{Entry, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed};
@@ -20,6 +21,8 @@ pub struct Observer {
     pub start: Vec<Entry<Spanned<Decimal>>>,
     /// The drift of states and outputs besides their rates, in their units per root second.
     pub disturbance: Vec<Entry<Spanned<Decimal>>>,
+    /// The age of the samples of outputs as they arrive.
+    pub delay: Delay,
     /// The estimator; if absent, least squares of known numbers, or a gradient where gains are written.
     pub estimator: Option<Spanned<Estimator>>,
     /// One gain for each unknown, or one for all: of a gradient, or of the scalar estimators of DREM in 1/s.
@@ -336,6 +339,13 @@ impl Observer {
                     "write `sensors`, `start` and `disturbance` in place of gains, or remove `wanted`: for gains the runtime \
                      has a `Monitor`",
                 ),
+            );
+        }
+        if let Some(delay) = self.delay.span().filter(|_| self.has_gains()) {
+            let message = "`delay` stands beside gains, whose observer takes every sample for one of the moment";
+            diagnostics.push(
+                Diagnostic::error(Code::SettingConflict, delay, message)
+                    .help("write `sensors`, `start` and `disturbance` in place of gains, or remove `delay` and give the observer the inputs as late as the outputs"),
             );
         }
         self.rebase.check(diagnostics);

@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::class::Class;
 use super::definitions::sorted;
+use super::delay::Delay;
 use super::formula::{Comparison, Decimal, Formula};
 use super::observer::Observer;
 use super::recording::Recording;
@@ -110,30 +111,6 @@ pub struct Simulation {
     pub baselines: Vec<Entry<Baseline>>,
     /// The panels of the figure.
     pub panels: Vec<Panel>,
-}
-
-/// Delays of sensors in seconds: one for all outputs, or some outputs' own; no delay where there is neither.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
-pub struct Delay {
-    /// The delay of all outputs.
-    pub all: Option<Spanned<Decimal>>,
-    /// The delays of outputs by name.
-    pub each: Vec<Entry<Spanned<Decimal>>>,
-}
-
-impl Delay {
-    /// The delay of an output, if it has one.
-    pub fn of(&self, output: &str) -> Option<&Spanned<Decimal>> {
-        let own = self.each.iter().find(|entry| entry.name.value == output).map(|entry| &entry.value);
-        own.or(self.all.as_ref())
-    }
-
-    /// All that are written.
-    pub fn written(&self) -> impl Iterator<Item = &Spanned<Decimal>> {
-        self.all.iter().chain(self.each.iter().map(|entry| &entry.value))
-    }
 }
 
 /// A formula of time that holds from some time on.
@@ -304,14 +281,14 @@ impl Simulation {
         lists || self.delay.written().next().is_some() || self.dropped.is_some() || !self.every.is_empty()
     }
 
-    /// The keys that make the plant and its sensors differ from the model.
-    pub fn departures(&self) -> Vec<&'static str> {
+    /// The keys that make the plant and its sensors differ from the model, whose observer knows these delays.
+    pub fn departures(&self, known: &Delay) -> Vec<&'static str> {
         let acts = |number: &Spanned<Decimal>| number.value.to_f64() != 0.0;
         let any = |entries: &[Entry<Spanned<Decimal>>]| entries.iter().any(|entry| acts(&entry.value));
         let keys = [
             ("plant", !self.plant.is_empty()),
             ("bias", any(&self.bias)),
-            ("delay", self.delay.written().any(acts)),
+            ("delay", self.delay != *known && self.delay.written().any(acts)),
             ("jitter", self.jitter.as_ref().is_some_and(acts)),
             ("noise", any(&self.noise)),
             ("quantisation", any(&self.quantisation)),

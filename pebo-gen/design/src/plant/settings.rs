@@ -19,6 +19,8 @@ pub struct Settings<N> {
     pub expected: Option<Vec<usize>>,
     /// The standard deviations of the outputs' sensors, where their noise is in the factor of the unknown too.
     pub errors_in_variables: Option<Vec<N>>,
+    /// The outputs that arrive late, if any does.
+    pub late: Option<Late<N>>,
     /// True if samples are joined by straight lines; else each is held.
     pub straight: bool,
     /// The estimator of the unknowns.
@@ -37,6 +39,38 @@ pub struct Settings<N> {
     pub gate: Option<N>,
     /// The bounds of samples, if they are known.
     pub limits: Option<Limits<N>>,
+}
+
+/// The outputs that arrive late (`LateObserver` of the runtime).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Late<N> {
+    /// The delay of each output in seconds, 0 for one on time.
+    pub delays: Vec<N>,
+    /// The index in y of the output of each row of the regression.
+    pub rows: Vec<usize>,
+    /// True for an output that the observer expects by its row.
+    pub is_expected: Vec<bool>,
+    /// The number of samples that may be on their way.
+    pub instants: usize,
+}
+
+impl<N> Late<N> {
+    /// The same with other numbers.
+    pub fn map<M>(&self, other: impl Fn(&N) -> M) -> Late<M> {
+        Late {
+            delays: self.delays.iter().map(other).collect(),
+            rows: self.rows.clone(),
+            is_expected: self.is_expected.clone(),
+            instants: self.instants,
+        }
+    }
+}
+
+impl Late<f64> {
+    /// True if the sample of any output may be missing.
+    pub fn may_lack_any(&self) -> bool {
+        self.delays.iter().zip(&self.is_expected).all(|(delay, expected)| *expected || *delay > 0.0)
+    }
 }
 
 /// The restarts of the extension from the estimate.
@@ -228,6 +262,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             output: false,
             expected: None,
             errors_in_variables: None,
+            late: None,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,
             lower,

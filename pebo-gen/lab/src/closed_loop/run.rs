@@ -26,7 +26,7 @@ use crate::figure::curve::{Curve, drawn};
 use crate::observe::certainty::CertaintyMonitor;
 use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
-use crate::observe::interpreted::observer;
+use crate::observe::padded::observer;
 use crate::score::Scorer;
 use crate::score::expected::ExpectedErrors;
 use crate::summary::{EstimateScore, Summary, contradiction};

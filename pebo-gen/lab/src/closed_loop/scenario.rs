@@ -32,7 +32,7 @@ use crate::observe::design::{Design, program};
 use crate::overrides::Overrides;
 use crate::score::domain::AssumedDomain;
 use crate::summary::advice::{Origin, advise};
-use crate::summary::{Estimate, Summary};
+use crate::summary::{Estimate, Summary, short};
 use crate::timing::Timing;
 
 /// The most numbers of a table; as text this is some hundred megabytes.
@@ -236,6 +236,7 @@ impl Resolution<'_> {
         let start = start(&names, &truth, &baselines, problems);
         let rates = rates(&names, &truth, &baselines, problems);
         let (timing, mut design, mut rates) = (timing?, design?, rates?);
+        problems.keep(admit_delays(names.model, &timing))?;
 
         let hats: Estimates = design
             .recovered
@@ -287,7 +288,7 @@ impl Resolution<'_> {
             measured: compile(&measured)?,
             sensors,
             jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
-            departures: simulation.departures(),
+            departures: simulation.departures(&names.model.observer.delay),
             moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
@@ -502,6 +503,18 @@ fn columns(plant: &Plant, design: &Design, baselines: &[ResolvedBaseline]) -> Ve
     let predicted = recovered().filter(|_| design.predicts());
     columns.extend(predicted.map(|state| format!("{state}{}", Trace::STANDARD_ERROR)));
     columns
+}
+
+/// Refuses a run that ends before the first late sample arrives.
+fn admit_delays(model: &Model, timing: &Timing) -> Result<(), Diagnostic> {
+    let duration = timing.at(timing.samples);
+    let Some(delay) = model.observer.delay.written().find(|delay| delay.value.to_f64() >= duration) else {
+        return Ok(());
+    };
+    let message =
+        format!("a sample that is {} s late does not arrive within {} s", delay.value.text(), short(duration));
+    let help = "simulate longer: the observer begins when the first sample is there";
+    Err(Diagnostic::error(Code::NumberOutOfRange, delay.span, message).help(help))
 }
 
 /// Refuses a table that is too large. Only a call can ask for one, as a file does not set the interval of rows.

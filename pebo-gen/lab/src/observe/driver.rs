@@ -7,7 +7,7 @@
 
 use pebo_runtime::{Fault, Gap};
 
-use super::interpreted::{DynObserver, Judgement};
+use super::padded::{DynObserver, Judgement};
 use super::sizes::{LARGEST, pad};
 use crate::score::faults::{Faults, SignalNames};
 

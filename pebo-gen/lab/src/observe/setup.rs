@@ -23,6 +23,8 @@ pub(crate) struct Settings {
     pub(crate) expected: Option<Vec<usize>>,
     /// The standard deviations of the sensors, where their noise is in the factor of the unknown too.
     pub(crate) errors_in_variables: Option<Vec<f64>>,
+    /// The outputs that arrive late, if any does.
+    pub(crate) late: Option<settings::Late<f64>>,
     /// The hold between samples.
     pub(crate) hold: Hold,
     pub(crate) estimator: Estimator,
@@ -126,6 +128,7 @@ impl Settings {
             output: resolved.output,
             expected: resolved.expected,
             errors_in_variables: resolved.errors_in_variables,
+            late: resolved.late,
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
@@ -183,6 +186,7 @@ impl Settings {
             output: settings.output,
             expected: settings.expected,
             errors_in_variables: settings.errors_in_variables.as_deref().map(all),
+            late: settings.late.as_ref().map(|late| late.map(Rational::to_f64)),
             hold: if settings.straight { Hold::First } else { Hold::Zero },
             rebase: match &settings.rebase {
                 Some(written) => Some(Rebase::of(written.map(Rational::to_f64))?),

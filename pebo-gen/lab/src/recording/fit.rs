@@ -42,6 +42,8 @@ pub struct FittedNumbers {
     pub start: Vec<(String, f64)>,
     /// The disturbances.
     pub disturbance: Vec<(String, f64)>,
+    /// The delays of the sensors, as the author wrote them.
+    pub delay: Vec<(String, f64)>,
     /// The logarithm of the ratio of the likelihoods, with these numbers and with the first guess.
     pub gain: f64,
 }
@@ -49,18 +51,20 @@ pub struct FittedNumbers {
 impl FittedNumbers {
     /// The section `observer`, as a file would have it.
     pub fn section(&self) -> String {
-        let parts = self.parts().map(|(key, values)| format!("  {key}: {values}\n"));
-        format!("observer:\n{}", parts.concat())
+        let parts = self.parts().into_iter().map(|(key, values)| format!("  {key}: {values}\n"));
+        format!("observer:\n{}", parts.collect::<String>())
     }
 
     /// Its keys, each with its value.
-    pub fn parts(&self) -> [(&'static str, String); 3] {
+    pub fn parts(&self) -> Vec<(&'static str, String)> {
         let map = |numbers: &[(String, f64)]| {
             let entries: Vec<String> =
                 numbers.iter().map(|(name, value)| format!("{name}: {}", short(*value))).collect();
             format!("{{{}}}", entries.join(", "))
         };
-        [("sensors", map(&self.sensors)), ("start", map(&self.start)), ("disturbance", map(&self.disturbance))]
+        let found = [("sensors", &self.sensors), ("start", &self.start), ("disturbance", &self.disturbance)];
+        let written = Some(("delay", &self.delay)).filter(|(_, delays)| !delays.is_empty());
+        found.into_iter().chain(written).map(|(key, numbers)| (key, map(numbers))).collect()
     }
 }
 
@@ -129,7 +133,11 @@ pub fn fit(
     disturbance.extend(search.still.iter().map(|name| (name.clone(), 0.0)));
     // An output that does nothing besides its rate is not listed.
     disturbance.retain(|(name, value)| *value > 0.0 || sensors.iter().all(|(sensor, _)| sensor != name));
-    Ok(FittedNumbers { sensors, start, disturbance, gain: best - first })
+    let delay = model.y.iter().filter_map(|output| {
+        let delay = model.observer.delay.of(&output.value)?.value.to_f64();
+        (delay > 0.0).then(|| (output.value.clone(), delay))
+    });
+    Ok(FittedNumbers { sensors, start, disturbance, delay: delay.collect(), gain: best - first })
 }
 
 fn unlikely(span: Span) -> Diagnostic {

@@ -13,7 +13,7 @@ use crate::closed_loop::scenario::ScoredEstimate;
 use crate::observe::certainty::CertaintyMonitor;
 use crate::observe::driver::ObserverDriver;
 use crate::observe::excitation::ExcitationMonitor;
-use crate::observe::interpreted::observer;
+use crate::observe::padded::observer;
 use crate::score::Scorer;
 use crate::score::domain::DomainMonitor;
 use crate::score::expected::ExpectedErrors;

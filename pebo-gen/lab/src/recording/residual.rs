@@ -12,6 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::plant::Plant;
+use pebo_design::plant::settings::Late;
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Diagnostics, Span};
 
@@ -30,16 +31,18 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// The outputs whose formulas need estimates, outputs and inputs alone.
+    /// The outputs whose formulas need estimates, outputs and inputs of one moment alone: a late sample is of another.
     pub(super) fn resolve(
         plant: &Plant,
-        layout: &Layout,
+        (layout, late): (&Layout, Option<&Late<f64>>),
         numbers: &BTreeMap<Symbol, Expr>,
         (span, problems): (Span, &mut Diagnostics),
     ) -> Option<Self> {
         let arena = &plant.arena;
-        let hidden: BTreeSet<Symbol> =
-            plant.x.iter().map(|state| state.symbol).chain(plant.w.iter().copied()).collect();
+        let is_late = |place: usize| late.is_some_and(|late| late.delays[place] > 0.0);
+        let late = plant.y.iter().enumerate().filter(|(place, _)| is_late(*place)).map(|(_, output)| output.symbol);
+        let states = plant.x.iter().map(|state| state.symbol);
+        let hidden: BTreeSet<Symbol> = states.chain(plant.w.iter().copied()).chain(late).collect();
         let mut known = numbers.clone();
         known.extend(layout.estimated.iter().map(|(state, hat)| (*state, arena.of_symbol(*hat))));
         let meaning = |output: &pebo_design::plant::Output| {
@@ -50,7 +53,8 @@ impl Residuals {
             let formula = arena.substitute(formula.expr, &known);
             (!arena.depends_on(formula, &hidden)).then_some((formula, is_rate))
         };
-        let found = plant.y.iter().enumerate().filter_map(|(place, output)| Some((place, meaning(output)?)));
+        let on_time = plant.y.iter().enumerate().filter(|(place, _)| !is_late(*place));
+        let found = on_time.filter_map(|(place, output)| Some((place, meaning(output)?)));
         let (outputs, formulas): (Vec<_>, Vec<Expr>) =
             found.map(|(place, (formula, is_rate))| ((place, is_rate), formula)).unzip();
         let formulas = problems.keep(layout.program(arena, &formulas, span))?;

@@ -139,7 +139,7 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     let assumed = AssumedDomain::of(plant, &layout.symbols, |assumed| {
         problems.keep(layout.program(arena, &arena.substitute_all(assumed, &numbers), span))
     })?;
-    let residuals = Residuals::resolve(plant, &layout, &numbers, (span, problems))?;
+    let residuals = Residuals::resolve(plant, (&layout, design.settings.late.as_ref()), &numbers, (span, problems))?;
     Some(Replay {
         title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
         panels: Panels::resolve(plant, &layout, &scored, &residuals),

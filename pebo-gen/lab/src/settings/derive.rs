@@ -9,7 +9,7 @@
 //! unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, OutputSlopes, RegressionKind};
+use pebo_design::analysis::{Derivation, OutputSlopes, Regression, RegressionKind};
 use pebo_design::model::{Decimal, Form, Model};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
@@ -18,6 +18,7 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use super::derived::DerivedSettings;
 use super::digits::rounded;
 use super::kind::ObserverKind;
+use super::late::late;
 use super::magnitude::Deviations;
 use super::point::Point;
 #[cfg(feature = "simulate")]
@@ -59,17 +60,18 @@ pub(super) fn derive(
     let asked = model.observer.known();
     if let Some(lacking) = known.lacks(&formulas.needed(plant)) {
         // Without known numbers in the section there is no observer either, and no complaint.
-        if let Some((key, span)) = asked {
-            problems.push(no_point(plant, (key, span), lacking));
+        if let Some(asked) = asked {
+            problems.push(no_point(plant, asked, lacking));
         }
         return None;
     }
-    let start = match frame.chi_0.clone() {
+    let mut chi_0 = match frame.chi_0.clone() {
         Some(written) => written,
         None => beginning(&known, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
     };
-    let point = completed(&known, plant, &formulas, &start)?;
+    let point = completed(&known, plant, &formulas, &chi_0)?;
     let deviations = Deviations::of(model, plant, &known, (shown, period))?;
+    let late = late((model, plant), (derivation, &formulas.regression), (kind, period), problems).ok()?;
 
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, sensed } = coordinates;
@@ -82,21 +84,18 @@ pub(super) fn derive(
     };
 
     let rows = formulas.deviations(&point, &deviations.sensors, &covariance)?;
-    let mut chi_0 = start;
     let (operator, covariance, [guess, noise]) = match kind {
         ObserverKind::Output => {
             // An equation of an instant has no unknown of its own.
             let rates = rows.len() - formulas.instants;
-            let mut of_rows = formulas.held.variances(&point, &deviations.of_outputs)?;
-            of_rows.truncate(rates);
-            drift.splice(0..0, of_rows);
-            let mut of_rows = sensor_noise(&formulas.rates, &point, &deviations, period)?;
-            of_rows.truncate(rates);
+            let first = |variances: Vec<f64>| variances.into_iter().take(rates);
+            drift.splice(0..0, first(formulas.held.variances(&point, &deviations.of_outputs)?));
+            let sensed = first(sensor_noise(&formulas.rates, &point, &deviations, period)?).chain(sensed).collect();
             // The outputs begin at the first sample.
             let start = rows[..rates].iter().map(|deviation| deviation.powi(2));
             let covariance: Vec<f64> = start.chain(covariance).collect();
-            chi_0 = vec![Rational::from(0); rates].into_iter().chain(chi_0).collect();
-            (Operator::Sampled(rows), covariance, [drift.clone(), [of_rows, sensed].concat()])
+            chi_0.splice(0..0, vec![Rational::from(0); rates]);
+            (Operator::Sampled(rows), covariance, [drift.clone(), sensed])
         }
         ObserverKind::Sampled => {
             let [covariance, guess, noise] = formulas.of_unknowns(&point, [&covariance, &drift, &sensed])?;
@@ -126,6 +125,7 @@ pub(super) fn derive(
         output: kind == ObserverKind::Output,
         expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
         errors_in_variables: formulas.errors_in_variables(plant, kind, &deviations.sensors),
+        late: late.clone(),
         straight: frame.straight,
         estimator: if adapts {
             Estimator::AdaptiveLeastSquares(covariance, guess)
@@ -143,7 +143,8 @@ pub(super) fn derive(
     #[cfg(feature = "simulate")]
     let prediction = {
         let is_elsewhere = is_elsewhere(plant, derivation, &formulas, kind);
-        Prediction::of(kind, is_elsewhere, can_rebase, Noise { sensors: deviations.sensors, drift })
+        // With late samples the gain is that of the covariance alone.
+        Prediction::of(kind, is_elsewhere && late.is_none(), can_rebase, Noise { sensors: deviations.sensors, drift })
     };
     Some(DerivedSettings {
         settings,
@@ -349,6 +350,8 @@ struct Formulas {
     eta: Vec<Symbol>,
     /// The number of rows of an instant beside those of rates: the last ones.
     instants: usize,
+    /// The equations that the observer runs.
+    regression: Regression,
 }
 
 impl Formulas {
@@ -357,7 +360,7 @@ impl Formulas {
         let arena = &plant.arena;
         let cascade = derivation.cascade.result.as_ref()?;
         let is_output = kind == ObserverKind::Output;
-        let regression = &derivation.regression.result.as_ref()?.computed(arena, is_output || is_gated);
+        let regression = derivation.regression.result.as_ref()?.computed(arena, is_output || is_gated);
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let eta = regression.eta_symbols.clone();
@@ -402,7 +405,7 @@ impl Formulas {
         // Outputs that are states of the observer drive it as such, not by their samples. What multiplies an unknown is
         // rid of noise only as far as the unknown is known: its noise still counts as drift, and stands for what is lost
         // between samples too.
-        if let Some(slopes) = OutputSlopes::of(plant, cascade, regression).filter(|_| is_output) {
+        if let Some(slopes) = OutputSlopes::of(plant, cascade, &regression).filter(|_| is_output) {
             let states: Vec<Symbol> = slopes.outputs.iter().map(|output| y[*output]).collect();
             let slopes = slopes.of_known_terms(plant);
             flow = flow.without(plant, &slopes.cascade, &states);
@@ -418,6 +421,7 @@ impl Formulas {
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
             eta,
             instants,
+            regression,
         })
     }
 

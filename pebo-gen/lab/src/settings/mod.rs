@@ -20,6 +20,7 @@ mod words;
 mod derive;
 mod digits;
 mod kind;
+mod late;
 mod magnitude;
 mod point;
 #[cfg(feature = "simulate")]

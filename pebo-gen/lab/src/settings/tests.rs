@@ -4,7 +4,7 @@ use pebo_cas::Rational;
 use pebo_design::analysis::Derivation;
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
-use pebo_design::plant::settings::{Covariance, Estimator, Operator, Rebase, Settings};
+use pebo_design::plant::settings::{Covariance, Estimator, Late, Operator, Rebase, Settings};
 use pebo_design::source::{Diagnostic, Diagnostics, Source};
 
 use super::DerivedSettings;
@@ -179,6 +179,10 @@ fn unknown_names_bad_numbers_and_contradictions_are_reported() {
         ("sensors: {v2: 1}, bounds: {lower: 0}", "`bounds` stands beside `sensors`"),
         ("gain: 1, filter: 1, gate: 9", "`gate` stands beside gains"),
         ("sensors: {v2: 1}, gate: 0", "the limit of the gate must be positive"),
+        ("delay: {v3: 1}", "`v3` under `delay` is not an output of y"),
+        ("delay: {v2: -1}", "a delay must not be negative"),
+        ("gain: 1, filter: 1, delay: 1", "`delay` stands beside gains"),
+        ("sensors: {v2: 1}, form: rate, delay: {v2: 1e-5}", "`v2` cannot be late: the filter"),
         ("sensors: {v2: 1e200}", "out of range"),
         ("sensors: {v2: 1}, start: {i1: 1e160}", "out of range"),
     ] {
@@ -186,6 +190,48 @@ fn unknown_names_bad_numbers_and_contradictions_are_reported() {
         let found = problems.iter().any(|problem| problem.message.contains(message) && problem.help.is_some());
         assert!(found, "{section}: {problems:?}");
     }
+}
+
+/// The outputs that are late.
+fn late(text: &str) -> Result<Late<f64>, Vec<Diagnostic>> {
+    let (settings, problems) = derived(text);
+    Ok(settings.ok_or(problems)?.late.as_ref().expect("a late output").map(Rational::to_f64))
+}
+
+#[test]
+fn late_outputs_are_expected_by_their_equations() {
+    let delayed = |delay: &str| {
+        let known = KNOWN.replace("observer: {", &format!("observer: {{delay: {delay}, "));
+        late(&format!("{CUK}{known}{SCENARIO}")).unwrap()
+    };
+    // Of three periods and a half: now, four of the past, and one for what is between two.
+    let found = delayed("{v4: 3.5e-5}");
+    let expected = Late { delays: vec![0.0, 3.5e-5], rows: vec![0, 1], is_expected: vec![true; 2], instants: 6 };
+    assert_eq!(found, expected);
+    assert_eq!(delayed("3.5e-5").delays, [3.5e-5, 3.5e-5]);
+    // However long, the room is limited.
+    assert_eq!(delayed("{v2: 1}").instants, 1024);
+    let none = derived(&format!("{CUK}observer: {{delay: {{v2: 0}}}}\n{SCENARIO}")).0.unwrap();
+    assert_eq!(none.late, None);
+}
+
+#[test]
+fn a_late_output_that_drives_the_observer_has_an_equation_of_its_own() {
+    let battery = "model: m\nx: [s]\ny: [V]\nu: [I]\nf_x: {s: -I}\ng_y: {V: 3 + 2*s - 0.1*I}\nphi: [s]\n\
+                   observer: {sensors: {V: 0.1}, start: {s: 1}, delay: 0.5}\n\
+                   simulation: {step: 0.1, initial: {s: 1}, control: {I: 0.1}}\n";
+    let found = late(battery).unwrap();
+    assert_eq!(found, Late { delays: vec![0.5], rows: vec![0], is_expected: vec![true], instants: 7 });
+    // A bearing is in a factor, and nothing else needs it: its samples are waited for.
+    let bearing = "model: m\nx: [p, q]\ny: [b]\nu: [v]\nassume: [sin(b) > 0]\nf_x: {p: -v, q: 0}\n\
+                   g_y: {b: \"atan2(q, p)\"}\nidentities: [p*sin(b) - q*cos(b)]\nphi: [p, q]\n\
+                   observer: {sensors: {b: 0.1}, start: {p: 1, q: 1}, delay: 0.5}\n\
+                   simulation: {step: 0.1, initial: {p: 1, q: 1}, control: {v: 0.1}}\n";
+    let found = late(bearing).unwrap();
+    assert_eq!((found.rows, found.is_expected), (vec![0], vec![false]));
+    // With a drift along it the observer needs the bearing of now.
+    let problems = late(&bearing.replace("p: -v", "p: -v*cos(b)")).unwrap_err();
+    assert!(problems[0].message.contains("`b` cannot be late: the observer needs it"), "{problems:?}");
 }
 
 #[test]

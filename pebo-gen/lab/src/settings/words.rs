@@ -103,6 +103,12 @@ impl KnownNumbers {
             (ObserverKind::Sampled, false) => "least squares of samples",
             (ObserverKind::Filtered, _) => "least squares through a filter",
         };
+        let delays = plant.y.iter().filter_map(|output| {
+            let name = arena.name(output.symbol);
+            let value = written.delay.of(&name)?.value.to_f64();
+            (value > 0.0).then(|| Value { name, value, unit: Some("s".to_owned()) })
+        });
+        let delays: Vec<Value> = delays.collect();
         let silent = written.known().is_none_or(|(key, _)| key == "form");
         Self {
             observer: if adapts {
@@ -110,16 +116,19 @@ impl KnownNumbers {
             } else {
                 observer.to_owned()
             },
-            numbers: vec![
-                Numbers {
-                    recorded: are_shown,
-                    ..numbers(Self::SENSORS, are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
-                },
+            numbers: vec![Numbers {
+                recorded: are_shown,
+                ..numbers(Self::SENSORS, are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
+            }]
+            .into_iter()
+            .chain((!delays.is_empty()).then(|| numbers("delay", false, delays)))
+            .chain([
                 numbers(Self::START, lacks(&x, &written.start), named(&x, &deviations.start, "")),
                 numbers(Self::DISTURBANCE, silent, drifts),
                 numbers("covariance", false, coordinates(covariance)),
                 numbers("process noise", false, coordinates(noise)),
-            ],
+            ])
+            .collect(),
             unpredicted: None,
         }
     }

@@ -286,7 +286,9 @@ fn mend(departure: &str, known: bool) -> &'static str {
     match departure {
         "plant" => "measure the parameter that differs, or make it a state with rate 0, which is then estimated too",
         "bias" => "calibrate the sensor, or make its offset a state with rate 0, which is then estimated too",
-        "delay" if known => "give the observer the inputs as late as the outputs, or raise `sensors` under `observer`",
+        "delay" if known => {
+            "write the delay under `observer` too: it then takes each sample for the time that it is of"
+        }
         "delay" => "give the observer the inputs as late as the outputs, or choose a lower `filter` or `gain`",
         "jitter" => {
             "give the observer the time that has passed in place of the period, as `step` takes it in the emitted code"

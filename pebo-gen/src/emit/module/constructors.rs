@@ -13,7 +13,7 @@ use crate::emit::expression::{ident, number};
 use crate::emit::names::camel;
 use pebo_cas::Rational;
 use pebo_design::plant::settings::{
-    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+    Covariance, Estimator, Extension, FiniteTime, Late, Limits, Operator, PATIENCE, Rebase, Settings,
 };
 
 impl Module<'_> {
@@ -80,6 +80,7 @@ impl Module<'_> {
             Operator::Window(_) => "WindowedRegression",
             Operator::Sampled(_) => "SampledRegression",
         });
+        names.extend(settings.late.is_some().then_some("Late"));
         names.extend(settings.output.then_some("OutputForm"));
         names.extend(matches!(settings.rebase, Some(Rebase::Above(_) | Rebase::Leak(_))).then_some("Drift"));
         names.extend(settings.gate.is_some().then_some("Gate"));
@@ -147,20 +148,33 @@ impl Module<'_> {
             let number = ident(INSTANTS);
             quote!(- #number)
         });
+        let past = settings.late.as_ref().map(|late| {
+            let instants = proc_macro2::Literal::usize_unsuffixed(late.instants);
+            quote! {
+                /// The samples that may be on their way.
+                pub const NP: usize = #instants;
+            }
+        });
+        let (observer, past_size) = match settings.late {
+            Some(_) => (ident("LateObserver"), Some(quote!(, NP))),
+            None => (ident("Observer"), None),
+        };
         match &settings.operator {
             Operator::Sampled(_) if settings.output => quote! {
                 /// The unknowns of the output form: the outputs whose rates are used, and the coordinates.
                 pub const NO: usize = NR #instants + NZ;
                 #rows
+                #past
                 #summary
-                pub type Tuned = pebo_runtime::Observer<
-                    #model, #estimator, NX, NY, NU, NO, NR, NO, SampledRegression<#scalar, NR, NO>
+                pub type Tuned = pebo_runtime::#observer<
+                    #model, #estimator, NX, NY, NU, NO, NR, NO, SampledRegression<#scalar, NR, NO> #past_size
                 >;
             },
             Operator::Sampled(_) => quote! {
+                #past
                 #summary
-                pub type Tuned = pebo_runtime::Observer<
-                    #model, #estimator, NX, NY, NU, NZ, NR, NE, SampledRegression<#scalar, NR, NE>
+                pub type Tuned = pebo_runtime::#observer<
+                    #model, #estimator, NX, NY, NU, NZ, NR, NE, SampledRegression<#scalar, NR, NE> #past_size
                 >;
             },
             Operator::Filter(_) if is_within(settings) => quote! {
@@ -205,7 +219,8 @@ impl Module<'_> {
                     let deviations = SVector::from([#(#deviations),*]);
                     let sampled = SampledRegression::new(&deviations)?;
                 };
-                (sampled, quote!(Tuned::with_regression(model, estimator, sampled, chi_0)))
+                let observer = if settings.late.is_some() { quote!(pebo_runtime::Observer) } else { quote!(Tuned) };
+                (sampled, quote!(#observer::with_regression(model, estimator, sampled, chi_0)))
             }
         };
         let (sensors, built) = match &settings.errors_in_variables {
@@ -216,31 +231,29 @@ impl Module<'_> {
             }
             None => (None, built),
         };
-        let built = match &settings.rebase {
-            Some(Rebase::Samples(samples)) => {
+        let rebased = settings.rebase.as_ref().map(|rebase| match rebase {
+            Rebase::Samples(samples) => {
                 let samples = syn::LitInt::new(&samples.to_string(), proc_macro2::Span::call_site());
-                quote! {
-                    let observer = #built?;
-                    observer.rebasing(#samples)
-                }
+                quote!(rebasing(#samples))
             }
-            Some(Rebase::Above(bound)) => {
+            Rebase::Above(bound) => {
                 let bound = one(bound);
-                quote! {
-                    let observer = #built?;
-                    observer.without_drift(Drift::Above(#bound))
-                }
+                quote!(without_drift(Drift::Above(#bound)))
             }
-            Some(Rebase::Leak(rate)) => {
+            Rebase::Leak(rate) => {
                 let rate = one(rate);
-                quote! {
-                    let observer = #built?;
-                    observer.without_drift(Drift::Leak(#rate))
-                }
+                quote!(without_drift(Drift::Leak(#rate)))
             }
+        });
+        let (plain, built) = match rebased {
+            Some(rebased) => (Some(quote!(let observer = #built?;)), quote!(observer.#rebased)),
+            None => (None, built),
+        };
+        let built = match &settings.late {
+            Some(late) => late_observer(late, &built, &mut one),
             None => built,
         };
-        let last = quote!(#regression #chi_0 #sensors #built);
+        let last = quote!(#regression #chi_0 #sensors #plain #built);
         let (model, errors) = if self.asked.is_empty() {
             (quote!(Self::new(parameters)), "A fault only where rounding moves a setting out of its range.")
         } else {
@@ -469,6 +482,13 @@ impl Module<'_> {
             Operator::Window(samples) => format!("window of {} samples", one(samples)),
             Operator::Sampled(deviations) => format!("samples of standard deviation {}", list(deviations)),
         });
+        parts.extend(settings.late.as_ref().map(|late| {
+            let late = self.plant.y.iter().zip(&late.delays).filter(|(_, delay)| !delay.is_zero());
+            let name = |output: pebo_cas::Symbol| self.plant.arena.name(output);
+            let each: Vec<String> =
+                late.map(|(y, delay)| format!("`{}` by {} s", name(y.symbol), one(delay))).collect();
+            format!("late {}", each.join(", "))
+        }));
         parts.extend(settings.errors_in_variables.as_ref().map(|sensors| {
             format!("each linearised at its likely outputs, with sensors of standard deviation {}", list(sensors))
         }));
@@ -486,6 +506,23 @@ impl Module<'_> {
             parts.push(format!("extension from {}", list(&settings.chi_0)));
         }
         format!("Settings: {}.", parts.join("; "))
+    }
+}
+
+/// The observer whose outputs arrive late, from one on time.
+fn late_observer(
+    late: &Late<Rational>,
+    on_time: &TokenStream,
+    one: &mut impl FnMut(&Rational) -> TokenStream,
+) -> TokenStream {
+    let delays = late.delays.iter().map(one);
+    let rows = late.rows.iter().map(|row| proc_macro2::Literal::usize_unsuffixed(*row));
+    let is_expected = late.is_expected.iter().map(|expected| ident(if *expected { "true" } else { "false" }));
+    quote! {
+        let on_time = #on_time?;
+        let delays = SVector::from([#(#delays),*]);
+        let late = Late { delays, rows: [#(#rows),*], is_expected: [#(#is_expected),*] };
+        Tuned::new(on_time, late)
     }
 }
 
@@ -524,6 +561,7 @@ fn numbers(settings: &Settings<Rational>) -> Vec<&Rational> {
         settings;
     let lists = [lower, upper, least, greatest, &settings.errors_in_variables].into_iter().flatten();
     let mut numbers: Vec<&Rational> = lists.chain([chi_0]).flatten().chain(gate).collect();
+    numbers.extend(settings.late.iter().flat_map(|late| &late.delays));
     if let Some(Limits { outputs, inputs, gap }) = limits {
         numbers.extend(outputs.iter().chain(inputs).flatten().flatten().chain(gap));
     }

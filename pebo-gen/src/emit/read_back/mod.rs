@@ -170,7 +170,9 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
             Item::Use(item) => globals.import(arena, &item.to_token_stream().to_string()),
             // The version of the runtime library: it computes nothing.
             Item::Const(item) if item.ident == "_" => {}
-            Item::Const(item) if item.ident == settings::WINDOW => window = Some(&*item.expr),
+            Item::Const(item) if item.ident == settings::WINDOW || item.ident == settings::PAST => {
+                window = Some(&*item.expr);
+            }
             Item::Const(item) if item.ident == settings::ROWS => rows = Some(&*item.expr),
             Item::Const(item) if item.ident == settings::UNKNOWNS => {
                 if item.expr.to_token_stream().to_string() != settings::unknowns(definitions.has_instants()) {

@@ -11,11 +11,14 @@ use super::value::{self, Value, unreadable};
 use crate::emit::error::EmitError;
 use pebo_cas::{Arena, Rational};
 use pebo_design::plant::settings::{
-    Covariance, Estimator, Extension, FiniteTime, Limits, Operator, PATIENCE, Rebase, Settings,
+    Covariance, Estimator, Extension, FiniteTime, Late, Limits, Operator, PATIENCE, Rebase, Settings,
 };
 
 /// The constant with the length of a window.
 pub(in crate::emit) const WINDOW: &str = "NW";
+
+/// The constant with the number of samples that may be on their way.
+pub(in crate::emit) const PAST: &str = "NP";
 
 /// The constant with the number of unknowns of the output form.
 pub(in crate::emit) const UNKNOWNS: &str = "NO";
@@ -56,6 +59,7 @@ enum Made {
     /// Samples are joined by straight lines, or not.
     Hold(bool),
     Operator(Operator<Rational>, bool),
+    Late(Late<Rational>),
     Observer(Box<Settings<Rational>>),
     Gate(Rational),
     Rebase(Rebase<Rational>),
@@ -118,7 +122,7 @@ pub(in crate::emit) fn read(
 struct Reader<'a> {
     arena: &'a Arena,
     globals: &'a value::Scope,
-    /// The constants with the length of a window, and with the indices of the outputs of the rows.
+    /// The constants with the length of a window or of the past, and with the indices of the outputs of the rows.
     constants: (Option<&'a Syntax>, Option<&'a Syntax>),
     made: BTreeMap<String, Made>,
 }
@@ -154,6 +158,9 @@ impl Reader<'_> {
                 let arguments = call.args.iter().map(|argument| self.expression(argument));
                 let arguments = arguments.collect::<Result<Vec<_>, _>>()?;
                 method(&call.method.to_string(), receiver, arguments).ok_or_else(unknown)
+            }
+            Syntax::Struct(given) if given.path.is_ident("Late") => {
+                self.late(given).map(Made::Late).ok_or_else(unknown)
             }
             // A number of samples; numbers of the scalar have a point.
             Syntax::Lit(syn::ExprLit { lit: syn::Lit::Int(samples), .. }) => {
@@ -205,9 +212,45 @@ impl Reader<'_> {
         Ok(Made::List(entries))
     }
 
+    /// The outputs that arrive late.
+    fn late(&self, given: &syn::ExprStruct) -> Option<Late<Rational>> {
+        let field = |name: &str| {
+            let found =
+                given.fields.iter().find(|field| matches!(&field.member, syn::Member::Named(own) if own == name));
+            found.map(|field| &field.expr)
+        };
+        let Made::List(delays) = self.expression(field("delays")?).ok()? else { return None };
+        let Syntax::Array(is_expected) = field("is_expected")? else { return None };
+        Some(Late {
+            delays,
+            rows: places(field("rows")?)?,
+            is_expected: is_expected.elems.iter().map(|flag| compact(flag).parse().ok()).collect::<Option<_>>()?,
+            instants: compact(self.constants.0?).parse().ok()?,
+        })
+    }
+
+    /// The operator of the regression that a constructor gives for its arguments.
+    fn operator(&self, function: &str, given: [Option<Made>; 3]) -> Option<Made> {
+        use Made::{Hold, List, Number};
+        Some(match (function, given) {
+            // Samples are joined to no signal: the settings have straight lines then.
+            ("SampledRegression::new", [Some(List(deviations)), None, None]) => {
+                Made::Operator(Operator::Sampled(deviations), true)
+            }
+            ("Filter::new", [Some(Number(alpha)), Some(Hold(straight)), None]) => {
+                Made::Operator(Operator::Filter(alpha), straight)
+            }
+            ("WindowedRegression::new", [Some(Hold(straight)), None, None]) => {
+                let samples = Rational::from_decimal(&compact(self.constants.0?)).ok()?;
+                Made::Operator(Operator::Window(samples), straight)
+            }
+            _ => return None,
+        })
+    }
+
     /// The value that a constructor of the runtime gives for its arguments.
     fn call(&self, function: &str, arguments: Vec<Made>) -> Option<Made> {
-        use Made::{Bounded, Hold, List, Model, Number};
+        use Made::{Bounded, List, Model, Number};
         let mut arguments = arguments.into_iter();
         let given = [arguments.next(), arguments.next(), arguments.next(), arguments.next()];
         Some(match (function, given) {
@@ -255,19 +298,14 @@ impl Reader<'_> {
             ("Within::new", [Some(Model(form, [None, None])), Some(lower), Some(upper), None]) => {
                 Model(form, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
-            // Samples are joined to no signal: the settings have straight lines then.
-            ("SampledRegression::new", [Some(List(deviations)), None, None, None]) => {
-                Made::Operator(Operator::Sampled(deviations), true)
+            ("SampledRegression::new" | "Filter::new" | "WindowedRegression::new", [first, second, third, None]) => {
+                self.operator(function, [first, second, third])?
             }
-            ("Filter::new", [Some(Number(alpha)), Some(Hold(straight)), None, None]) => {
-                Made::Operator(Operator::Filter(alpha), straight)
-            }
-            ("WindowedRegression::new", [Some(Hold(straight)), None, None, None]) => {
-                let samples = Rational::from_decimal(&compact(self.constants.0?)).ok()?;
-                Made::Operator(Operator::Window(samples), straight)
+            ("Tuned::new", [Some(Made::Observer(settings)), Some(Made::Late(late)), None, None]) => {
+                Made::Observer(Box::new(Settings { late: Some(late), ..*settings }))
             }
             (
-                "Tuned::new" | "Tuned::with_regression",
+                "Tuned::new" | "Tuned::with_regression" | "pebo_runtime::Observer::with_regression",
                 [
                     Some(Model(form, within)),
                     Some(estimator),
@@ -293,6 +331,7 @@ impl Reader<'_> {
                     output,
                     expected,
                     errors_in_variables: None,
+                    late: None,
                     straight,
                     estimator,
                     lower,

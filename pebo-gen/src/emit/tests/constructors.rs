@@ -2,7 +2,7 @@
 
 use super::fixtures::{CUK, vanishes};
 use super::*;
-use pebo_design::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Limits, Operator, Rebase};
+use pebo_design::plant::settings::{Covariance, Estimator, Extension, FiniteTime, Late, Limits, Operator, Rebase};
 
 fn number(text: &str) -> Rational {
     Rational::from_decimal(text).unwrap()
@@ -19,6 +19,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         output: false,
         expected: None,
         errors_in_variables: None,
+        late: None,
         straight: true,
         estimator,
         lower: None,
@@ -181,6 +182,39 @@ fn noise_in_the_factor_has_the_deviations_of_the_sensors() {
     let found = statements(&text);
     assert_eq!(found[found.len() - 3..], expected);
     refuse_changed(&given, &[("[0.1, 0.2]", "[0.1, 0.3]"), (".with_errors_in_variables(&sensors)?", "")]);
+}
+
+#[test]
+fn late_outputs_have_their_delays_and_a_past() {
+    let (delays, rows) = (numbers(["0", "2e-6"]), vec![0, 1]);
+    let late = Late { delays, rows, is_expected: vec![true, false], instants: 7 };
+    let given = Settings { late: Some(late), ..output_form() };
+    let text = tuned(&given);
+    for expected in ["pub const NP: usize = 7;", "pub type Tuned = pebo_runtime::LateObserver<", "late `v4` by 2e-6 s"]
+    {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    let expected = [
+        "let observer = pebo_runtime::Observer::with_regression(model, estimator, sampled, chi_0)?;",
+        "let on_time = observer.rebasing(1)?;",
+        "let delays = SVector::from([0.0, 2e-6]);",
+        "let late = Late {",
+        "delays,",
+        "rows: [0, 1],",
+        "is_expected: [true, false],",
+        "};",
+        "Tuned::new(on_time, late)",
+    ];
+    let found = statements(&text);
+    assert_eq!(found[found.len() - 9..], expected);
+    let changes = [
+        ("NP: usize = 7", "NP: usize = 8"),
+        ("[0.0, 2e-6]", "[0.0, 3e-6]"),
+        ("rows: [0, 1]", "rows: [1, 0]"),
+        ("[true, false]", "[true, true]"),
+        ("Tuned::new(on_time, late)", "Ok(on_time)"),
+    ];
+    refuse_changed(&given, &changes);
 }
 
 #[test]

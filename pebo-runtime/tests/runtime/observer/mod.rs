@@ -5,6 +5,7 @@ mod drift;
 mod errors_in_variables;
 mod functions;
 mod kinds;
+mod late;
 pub(crate) mod rebasing;
 mod sampling;
 mod storm;

@@ -6,10 +6,11 @@
 use serde::Deserialize;
 
 use crate::model::class::{Electromechanical, Lti, Mechanical};
+use crate::model::delay::Delay;
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::{CascadeClass, Delay, RelationForm, Scale};
+use crate::model::written::{CascadeClass, RelationForm, Scale};
 
 /// A text with its span: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;

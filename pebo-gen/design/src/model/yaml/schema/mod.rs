@@ -269,6 +269,12 @@ const OBSERVER: &[Key] = &[
         "By how much a state or output drifts besides its rate, in its unit per root second; 0 if left out beside `sensors` or `start`",
     ),
     optional(
+        "delay",
+        Shape::AllOrEach,
+        "delay: {v2: 2e-6}",
+        "How old the samples of an output are as they arrive, in seconds: one number, or one for each output; the observer takes each for the time that it is of; 0 if left out",
+    ),
+    optional(
         "form",
         Shape::Choice(Form::NAMES),
         "form: output",
@@ -434,7 +440,7 @@ const SIMULATION: &[Key] = &[
         "delay",
         Shape::AllOrEach,
         "delay: {v2: 2e-6}",
-        "How old a sample is, in seconds: one number, or one for each output; a part of a step is interpolated straight between samples",
+        "How old a sample is, in seconds: one number, or one for each output; a part of a step is interpolated straight between samples; that of the section `observer` if left out",
     ),
     optional(
         "jitter",

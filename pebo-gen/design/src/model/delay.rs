@@ -1,0 +1,38 @@
+//! Delays of sensors, as they are written.
+
+#[cfg(feature = "yaml")]
+use serde::Deserialize;
+
+use super::formula::Decimal;
+use super::spanned::{Entry, Spanned};
+use crate::source::Span;
+
+/// Delays of sensors in seconds: one for all outputs, or some outputs' own; no delay where there is neither.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
+pub struct Delay {
+    /// The delay of all outputs.
+    pub all: Option<Spanned<Decimal>>,
+    /// The delays of outputs by name.
+    pub each: Vec<Entry<Spanned<Decimal>>>,
+}
+
+impl Delay {
+    /// The delay of an output, if it has one.
+    pub fn of(&self, output: &str) -> Option<&Spanned<Decimal>> {
+        let own = self.each.iter().find(|entry| entry.name.value == output).map(|entry| &entry.value);
+        own.or(self.all.as_ref())
+    }
+
+    /// The span of the first of them.
+    pub fn span(&self) -> Option<Span> {
+        let first = self.each.first().map(|entry| entry.name.span);
+        self.all.as_ref().map(|all| all.span).or(first)
+    }
+
+    /// All that are written.
+    pub fn written(&self) -> impl Iterator<Item = &Spanned<Decimal>> {
+        self.all.iter().chain(self.each.iter().map(|entry| &entry.value))
+    }
+}

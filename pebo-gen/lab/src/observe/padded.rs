@@ -1,0 +1,372 @@
+//! The runtime library's observer of any size.
+//!
+//! The runtime's sizes are constants and a model's are not, so the model is padded with zeros to one of a few sizes;
+//! zero rows and columns change no estimate. The code is that of the target, except for the functions of the model.
+
+use std::fmt;
+
+use pebo_runtime::nalgebra::SVector;
+use pebo_runtime::{
+    Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer, Uncertain,
+    Within,
+};
+
+use crate::settings::Prediction;
+use pebo_design::plant::settings::PATIENCE;
+
+use super::design::Design;
+use super::excitation::ComponentInformation;
+use super::interpreted::{Derived, Dynamic, ReadableExtension, RegressionType, Static};
+use super::monitored::MonitoredEstimator;
+use super::operator::PaddedOperator;
+use super::setup::{self, Covariance, Estimator, Operator, Rebase};
+use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
+use super::uncertainty::{Interval, NoiseModel, Surprise, Uncertainty};
+
+/// An observer of any size.
+pub(crate) trait DynObserver: fmt::Debug {
+    /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An
+    /// output that is missing is NaN, where [`admits_partial`](Self::admits_partial).
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+
+    /// True if a sample may lack outputs.
+    fn admits_partial(&self) -> bool;
+
+    /// The standard errors of the estimates, `age` seconds after the last sample; none where they are not known.
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>>;
+
+    /// The number of restarts after gaps that were too long.
+    fn restarts(&self) -> u64;
+
+    /// What a sample says of the observer's numbers.
+    fn judge(&self, y: &[f64], u: &[f64], dt: f64) -> Option<Judgement>;
+
+    /// The information of the data so far on each component of the unknown.
+    fn component_information(&self) -> ComponentInformation;
+
+    /// The coordinates z for a value of theta with the present extension.
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64>;
+}
+
+/// What a sample says of an observer's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Judgement {
+    /// The normalised square of its innovation, divided by the number of rows.
+    pub(crate) square: f64,
+    /// The logarithm of its likelihood, but for a constant of the number of rows.
+    pub(crate) likelihood: f64,
+}
+
+/// The observer of a design, of the smallest size that has room for it: a step costs the square of the size, or its
+/// cube.
+pub(crate) fn observer(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
+    const FEW: usize = SMALL[0];
+    const SOME: usize = SMALL[1];
+    let size = design.size();
+    if size <= FEW {
+        of_size::<FEW>(design)
+    } else if size <= SOME {
+        of_size::<SOME>(design)
+    } else if size <= MOST_MIXED {
+        of_size::<MOST_MIXED>(design)
+    } else {
+        of_size::<LARGEST>(design)
+    }
+}
+
+fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn DynObserver>, Fault> {
+    if design.settings.output {
+        return Ok(Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?));
+    }
+    Ok(match (design.is_generalised, design.is_static) {
+        (false, false) => Box::new(PaddedObserver::<Integrator<f64, N>, Dynamic, N>::new(design)?),
+        (false, true) => Box::new(PaddedObserver::<Integrator<f64, N>, Static, N>::new(design)?),
+        (true, false) => Box::new(PaddedObserver::<Fundamental<f64, N>, Dynamic, N>::new(design)?),
+        (true, true) => Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?),
+    })
+}
+
+type PaddedModel<X, K, const N: usize> = Within<Derived<X, K, N>, f64, N>;
+
+type PaddedEstimator<const N: usize> = Bounded<f64, MonitoredEstimator<N>, N>;
+
+type Inner<X, K, const N: usize> =
+    Observer<PaddedModel<X, K, N>, PaddedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>>;
+
+/// The samples that may be on their way: the most that settings ask for. More room changes no estimate.
+pub(crate) const ON_THEIR_WAY: usize = 1024;
+
+type Delayed<X, K, const N: usize> =
+    LateObserver<PaddedModel<X, K, N>, PaddedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>, ON_THEIR_WAY>;
+
+/// The runtime's observer at size N, with samples on time or late.
+#[allow(clippy::large_enum_variant, reason = "one of a run, and the smaller variant is the usual one")]
+enum Running<X: ReadableExtension<N>, K: RegressionType, const N: usize> {
+    OnTime(Inner<X, K, N>),
+    Late(Box<Delayed<X, K, N>>),
+}
+
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Running<X, K, N> {
+    fn new(observer: Inner<X, K, N>, design: &Design) -> Result<Self, Fault> {
+        let Some(late) = &design.settings.late else { return Ok(Self::OnTime(observer)) };
+        let mut rows = [usize::MAX; N];
+        rows.iter_mut().zip(&late.rows).for_each(|(row, output)| *row = *output);
+        let mut is_expected = [false; N];
+        is_expected.iter_mut().zip(&late.is_expected).for_each(|(padded, expected)| *padded = *expected);
+        let late = Late { delays: pad(&late.delays), rows, is_expected };
+        Ok(Self::Late(Box::new(LateObserver::new(observer, late)?)))
+    }
+
+    /// The observer at the present, or before its first sample.
+    fn now(&self) -> &Inner<X, K, N> {
+        match self {
+            Self::OnTime(observer) => observer,
+            Self::Late(late) => late.now().unwrap_or(late.past()),
+        }
+    }
+
+    /// A step; with `parted`, outputs that have these rows may be missing.
+    fn step(&mut self, y: &[f64], parted: Option<[usize; N]>, u: &[f64], dt: f64) -> Result<SVector<f64, N>, Fault> {
+        match (self, parted) {
+            (Self::OnTime(observer), Some(rows)) => observer.step_partly(pad(y), &rows, pad(u), dt),
+            (Self::OnTime(observer), None) => observer.step(pad(y), pad(u), dt),
+            (Self::Late(late), Some(_)) => late.step_partly(pad(y), pad(u), dt),
+            (Self::Late(late), None) => late.step(pad(y), pad(u), dt),
+        }
+    }
+
+    fn innovation(&self, y: &[f64], u: &[f64], dt: f64) -> Result<Innovation<f64, N>, Fault> {
+        match self {
+            Self::OnTime(observer) => observer.innovation(pad(y), pad(u), dt),
+            Self::Late(late) => late.innovation(pad(y), pad(u), dt),
+        }
+    }
+
+    fn restart(&mut self, chi_0: SVector<f64, N>) -> Result<(), Fault> {
+        match self {
+            Self::OnTime(observer) => observer.restart(chi_0, &SVector::zeros()),
+            Self::Late(late) => late.restart(chi_0, &SVector::zeros()),
+        }
+    }
+}
+
+/// The runtime's observer with what it is asked for in a run.
+struct PaddedObserver<X: ReadableExtension<N>, K: RegressionType, const N: usize> {
+    observer: Running<X, K, N>,
+    /// Refuses outliers.
+    gate: Option<Gate<f64>>,
+    /// Refuses samples out of range, and finds gaps that are too long.
+    limits: Option<Limits<f64, N, N>>,
+    /// The extension at the start.
+    chi_0: SVector<f64, N>,
+    /// The number of restarts.
+    restarts: u64,
+    /// Seconds since the last sample with outputs.
+    waited: f64,
+    /// The index of each row's output, where rows may be left out.
+    rows: Option<[usize; N]>,
+    /// The recovered states, and the rows of the regression.
+    sizes: (usize, usize),
+    /// True if errors are predicted from the known numbers of the sensors.
+    is_certain: bool,
+    /// The covariance of the errors, where the noise of a sample is not only in its row.
+    uncertainty: Option<Uncertainty<N>>,
+    /// The standard deviations of the rows of samples.
+    weights: Vec<f64>,
+}
+
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<X, K, N> {
+    fn new(design: &Design) -> Result<Self, Fault> {
+        let settings = &design.settings;
+        let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
+        let estimator =
+            Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let passage = PaddedOperator::new(settings)?;
+        let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
+        let model = Within::new(Derived::new(design), &lower, &upper)?;
+        let observer = Observer::with_regression(model, estimator, passage, pad(&settings.chi_0))?;
+        let observer = match &settings.errors_in_variables {
+            Some(sensors) => observer.with_errors_in_variables(&pad(sensors))?,
+            None => observer,
+        };
+        let mut rows = [usize::MAX; N];
+        rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
+        let whole = settings.output && design.primitive.is_none();
+        let observer = match settings.rebase {
+            Some(Rebase::Samples(every)) => observer.rebasing(every)?,
+            Some(Rebase::Drift(form)) => observer.without_drift(form)?,
+            None => observer,
+        };
+        let may_lack = settings.late.as_ref().map_or(whole, pebo_design::plant::settings::Late::may_lack_any);
+        Ok(Self {
+            observer: Running::new(observer, design)?,
+            gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
+            limits: settings.limits.as_ref().map(limits).transpose()?,
+            chi_0: pad(&settings.chi_0),
+            restarts: 0,
+            waited: 0.0,
+            rows: may_lack.then_some(rows),
+            sizes: (design.recovered.len(), design.equations),
+            is_certain: design.predicts(),
+            uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
+            weights: match &settings.operator {
+                Operator::Sampled(deviations) => deviations.clone(),
+                Operator::Filter(_) | Operator::Window(_) => Vec::new(),
+            },
+        })
+    }
+
+    /// The estimate of z with the present extension.
+    fn coordinates_now(&self) -> SVector<f64, N> {
+        let now = self.observer.now();
+        now.extension().coordinates(&now.theta())
+    }
+
+    /// True where no sample of a late output has become whole: that is no innovation.
+    fn is_pending(&self, innovation: &Innovation<f64, N>) -> bool {
+        matches!(self.observer, Running::Late(_)) && innovation.value.iter().all(|value| *value == 0.0)
+    }
+
+    /// Propagates the covariance over a step.
+    fn follow(&mut self, before: Option<(SVector<f64, N>, SVector<f64, N>)>, y: &[f64], u: &[f64], dt: f64) {
+        let observer = self.observer.now();
+        let (Some(uncertainty), Some(after)) = (&mut self.uncertainty, observer.terms()) else { return };
+        let (model, u) = (observer.model(), pad(u));
+        let Some((before, z)) = before else { return uncertainty.begin(model, after, &u) };
+        let (_, map) = observer.extension().parts();
+        let taken = observer.estimator().covariance_root(0.0).is_some_and(|root| {
+            let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
+            let interval = Interval { before: &before, after, u: &u, dt, z };
+            let factor = observer.estimator().estimator().factor();
+            uncertainty.take(model, &interval, (&(map * root), factor), &missing).is_ok()
+        });
+        if !taken {
+            uncertainty.reset();
+        }
+    }
+}
+
+/// The noise model of a design, where the noise of a sample is not only in its row.
+fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
+    let settings = &design.settings;
+    let (Some(Prediction::Noise(noise)), Operator::Sampled(weights)) = (&settings.prediction, &settings.operator)
+    else {
+        return None;
+    };
+    let (Estimator::LeastSquares(Covariance { start, .. })
+    | Estimator::AdaptiveLeastSquares(Covariance { start, .. }, _)) = &settings.estimator
+    else {
+        return None;
+    };
+    Some(NoiseModel {
+        sensors: noise.sensors.clone(),
+        weights: weights.clone(),
+        start: start.clone(),
+        drift: noise.drift.clone(),
+        rows: if settings.output { design.rates() } else { 0 },
+        measured: if whole { design.rows.clone() } else { Vec::new() },
+    })
+}
+
+/// The limits of a run in the runtime's type.
+fn limits<const N: usize>(known: &setup::Limits) -> Result<Limits<f64, N, N>, Fault> {
+    let side = |each: &[Option<[f64; 2]>], side: usize, other: f64| {
+        let values: Vec<f64> = each.iter().map(|limit| limit.map_or(other, |limit| limit[side])).collect();
+        padded::<N>(&values, other)
+    };
+    let least = |each: &[Option<[f64; 2]>]| side(each, 0, f64::NEG_INFINITY);
+    let most = |each: &[Option<[f64; 2]>]| side(each, 1, f64::INFINITY);
+    let limits = Limits::none()
+        .outputs(&least(&known.outputs), &most(&known.outputs))?
+        .inputs(&least(&known.inputs), &most(&known.inputs))?;
+    match known.gap {
+        Some(longest) => limits.gap(longest),
+        None => Ok(limits),
+    }
+}
+
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> fmt::Debug for PaddedObserver<X, K, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Padded").field(self.observer.now().model()).finish()
+    }
+}
+
+impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for PaddedObserver<X, K, N> {
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+        if let Some(limits) = &self.limits {
+            // A missing output is in no range: it is left out, or refused for that.
+            let present = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
+            match limits.check(&pad(&present), &pad(u), self.waited + dt) {
+                Err(Fault::Gap) => {
+                    self.observer.restart(self.chi_0)?;
+                    self.restarts += 1;
+                    self.uncertainty.iter_mut().for_each(Uncertainty::reset);
+                }
+                Err(Fault::OutputRange { index }) if y[index].is_nan() => {}
+                checked => checked?,
+            }
+        }
+        let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
+        if let (Some(gate), None) = (&mut self.gate, parted) {
+            gate.admit(&self.observer.innovation(y, u, dt)?)?;
+        }
+        let estimate = if self.uncertainty.is_some() {
+            let before = self.observer.now().terms().map(|before| (*before, self.coordinates_now()));
+            let estimate = self.observer.step(y, parted, u, dt)?;
+            self.follow(before, y, u, dt);
+            estimate
+        } else {
+            self.observer.step(y, parted, u, dt)?
+        };
+        self.waited = if y.iter().all(|output| output.is_nan()) { self.waited + dt } else { 0.0 };
+        hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
+        Ok(())
+    }
+
+    fn admits_partial(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn standard_errors(&self, age: f64) -> Option<Vec<f64>> {
+        let errors = match &self.uncertainty {
+            Some(uncertainty) => {
+                let now = self.observer.now();
+                uncertainty
+                    .of((&self.coordinates_now(), now.terms()?), age, |z, y| now.model().recover_unbounded(z, y))?
+            }
+            None => self.is_certain.then(|| self.observer.now().standard_error_after(age))??,
+        };
+        Some(errors.as_slice()[..self.sizes.0].to_vec())
+    }
+
+    fn judge(&self, y: &[f64], u: &[f64], dt: f64) -> Option<Judgement> {
+        let innovation = self.is_certain.then(|| self.observer.innovation(y, u, dt).ok())??;
+        let now = self.observer.now();
+        let Surprise { square, determinant } = match (&self.uncertainty, now.terms()) {
+            (Some(uncertainty), Some(before)) => {
+                let (after, u) = (&pad(y), &pad(u));
+                let interval = Interval { before, after, u, dt, z: self.coordinates_now() };
+                uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)?
+            }
+            _ if self.is_pending(&innovation) => return None,
+            _ => Surprise { square: innovation.normalised_square, determinant: innovation.determinant },
+        };
+        let likelihood =
+            -0.5 * (square + determinant.ln()) - self.weights.iter().map(|weight| weight.ln()).sum::<f64>();
+        Some(Judgement { square: square / crate::timing::real(u64::try_from(self.sizes.1).ok()?), likelihood })
+    }
+
+    fn restarts(&self) -> u64 {
+        self.restarts
+    }
+
+    fn component_information(&self) -> ComponentInformation {
+        self.observer.now().estimator().estimator().component_information()
+    }
+
+    #[cfg(test)]
+    fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        self.observer.now().extension().coordinates(&pad(theta)).as_slice()[..theta.len()].to_vec()
+    }
+}

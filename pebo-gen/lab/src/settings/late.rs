@@ -1,0 +1,147 @@
+//! Finds what stands in for outputs that arrive late.
+//!
+//! In: the delays of the section `observer` and the equations of the regression. Out: the rows that wait for each output,
+//! and the outputs that the observer expects until their samples arrive. An output is expected by an equation
+//! `y_i = (..)` that is free of `y_i` on the right. One that nothing but its own equations needs is waited for alone.
+
+use std::collections::BTreeSet;
+
+use pebo_cas::{Expr, Rational, Symbol};
+use pebo_design::analysis::{Derivation, Regression, RegressionKind};
+use pebo_design::model::Model;
+use pebo_design::plant::Plant;
+use pebo_design::plant::settings::Late;
+use pebo_design::source::{Code, Diagnostic, Diagnostics};
+
+use super::kind::ObserverKind;
+
+/// The most samples on their way: each is some hundred bytes in a run. Of more the newest are joined.
+const MOST_INSTANTS: u16 = 1024;
+
+/// The samples on their way where the period is not known.
+const ASSUMED_INSTANTS: u16 = 64;
+
+/// The late outputs of an observer of this kind with these equations; none where no output is late. Where one cannot be
+/// late, that is reported.
+pub(super) fn late(
+    (model, plant): (&Model, &Plant),
+    (derivation, regression): (&Derivation, &Regression),
+    (kind, period): (ObserverKind, Option<f64>),
+    problems: &mut Diagnostics,
+) -> Result<Option<Late<Rational>>, ()> {
+    let arena = &plant.arena;
+    let mut delays = Vec::new();
+    for output in &plant.y {
+        let written = model.observer.delay.of(&arena.name(output.symbol));
+        delays.push(match written {
+            Some(delay) => Rational::from_decimal(delay.value.text()).map_err(|_| ())?,
+            None => Rational::from(0),
+        });
+    }
+    let longest = delays.iter().map(Rational::to_f64).fold(0.0, f64::max);
+    if longest <= 0.0 {
+        return Ok(None);
+    }
+    let equations = Equations::of(plant, regression, kind);
+    let is_expected: Vec<bool> = plant.y.iter().map(|output| equations.expecting(plant, output.symbol)).collect();
+    let rows = equations.samples.iter().zip(&equations.sources).map(|(equation, sources)| {
+        // Without the latest of its outputs an equation says nothing yet.
+        let own = (0..plant.y.len()).filter(|output| equation.has(plant, plant.y[*output].symbol));
+        let latest = own.reduce(|late, output| if delays[output] > delays[late] { output } else { late });
+        latest.or(sources.first().copied()).unwrap_or(0)
+    });
+    let rows = rows.collect();
+    for (output, measured) in plant.y.iter().enumerate().filter(|(output, _)| !delays[*output].is_zero()) {
+        let name = arena.name(measured.symbol);
+        let lacking = if kind == ObserverKind::Filtered {
+            "the filter of this observer takes every sample for one of the moment".to_owned()
+        } else if !is_expected[output] && is_needed(plant, derivation, &equations, measured.symbol) {
+            format!("the observer needs it at every instant, and no equation of the form `{name} = ..` says what it is")
+        } else {
+            continue;
+        };
+        let span = model.observer.delay.of(&name).map_or(model.name.span, |delay| delay.span);
+        let message = format!("`{name}` cannot be late: {lacking}");
+        problems.push(Diagnostic::error(Code::SettingConflict, span, message).help(format!(
+            "remove the delay of `{name}`, and give the observer its inputs and other outputs as late: the estimate is then \
+             as old"
+        )));
+        return Err(());
+    }
+    // The instants of now and of the delay, and one for a part of a period.
+    let wanted = period.map_or(f64::from(ASSUMED_INSTANTS), |period| (longest / period).ceil() + 2.0);
+    let instants = (3..MOST_INSTANTS).find(|count| f64::from(*count) >= wanted).unwrap_or(MOST_INSTANTS);
+    Ok(Some(Late { delays, rows, is_expected, instants: instants.into() }))
+}
+
+/// The equations of an observer.
+struct Equations {
+    /// Those of samples: what is known in each, and the factors of the unknowns.
+    samples: Vec<Equation>,
+    /// The outputs that each is made of.
+    sources: Vec<Vec<usize>>,
+    /// The rates of outputs that are states of the observer.
+    rates: Vec<Expr>,
+}
+
+struct Equation {
+    known: Expr,
+    factors: Vec<Expr>,
+}
+
+impl Equation {
+    /// True if it depends on an output.
+    fn has(&self, plant: &Plant, output: Symbol) -> bool {
+        let own = BTreeSet::from([output]);
+        plant.arena.depends_on(self.known, &own) || self.has_in_factor(plant, output)
+    }
+
+    fn has_in_factor(&self, plant: &Plant, output: Symbol) -> bool {
+        let own = BTreeSet::from([output]);
+        self.factors.iter().any(|factor| plant.arena.depends_on(*factor, &own))
+    }
+}
+
+impl Equations {
+    fn of(plant: &Plant, regression: &Regression, kind: ObserverKind) -> Self {
+        let arena = &plant.arena;
+        let rates = match kind {
+            ObserverKind::Output => regression.phi_0.len() - regression.instants(arena),
+            ObserverKind::Sampled | ObserverKind::Filtered => 0,
+        };
+        let row = |row: usize| match regression.kind {
+            RegressionKind::Dynamic if row < rates => {
+                let output = plant.y[regression.rows()[row]].symbol;
+                Equation { known: arena.of_symbol(output), factors: Vec::new() }
+            }
+            _ if row < rates => {
+                Equation { known: regression.primitive_0[row], factors: regression.primitive_1[row].clone() }
+            }
+            _ => Equation { known: regression.phi_0[row], factors: regression.phi_1[row].clone() },
+        };
+        let of_rates = regression.phi_0.iter().zip(&regression.phi_1).take(rates);
+        Self {
+            samples: (0..regression.phi_0.len()).map(row).collect(),
+            sources: regression.sources.clone(),
+            rates: of_rates.flat_map(|(known, factors)| std::iter::once(known).chain(factors)).copied().collect(),
+        }
+    }
+
+    /// True if an equation expects an output: the first that has it.
+    fn expecting(&self, plant: &Plant, output: Symbol) -> bool {
+        let first = self.samples.iter().find(|equation| equation.has(plant, output));
+        first.is_some_and(|equation| {
+            let slope = plant.arena.as_number(plant.arena.derivative(equation.known, output));
+            slope == Some(Rational::ONE) && !equation.has_in_factor(plant, output)
+        })
+    }
+}
+
+/// True if the observer computes with an output besides its own equations.
+fn is_needed(plant: &Plant, derivation: &Derivation, equations: &Equations, output: Symbol) -> bool {
+    let own = BTreeSet::from([output]);
+    let cascade = derivation.cascade.result.iter();
+    let flow = cascade.flat_map(|cascade| cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()));
+    let inverse = derivation.left_inverse.result.iter().flat_map(|inverse| inverse.x.iter().map(|(_, state)| state));
+    flow.chain(&equations.rates).chain(inverse).any(|formula| plant.arena.depends_on(*formula, &own))
+}
