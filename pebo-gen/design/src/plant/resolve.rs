@@ -26,8 +26,21 @@ impl Plant {
     /// Resolves the names and numbers of a model; later computations on the plant draw from the budget, as the
     /// expansion of a class does.
     pub fn resolve_within(model: &Model, budget: Budget) -> Result<Self, Vec<Diagnostic>> {
+        Self::resolve_in(Rc::new(Arena::within(budget)), model)
+    }
+
+    /// The same plant in which these parameters are symbols: one that is given as zero is in no formula, as proofs hold
+    /// for zero then.
+    pub fn with_symbols(&self, model: &Model, parameters: &[&str]) -> Result<Self, Vec<Diagnostic>> {
+        let mut open = model.clone();
+        for parameter in open.parameters.iter_mut().filter(|entry| parameters.contains(&entry.name.value.as_str())) {
+            parameter.value = None;
+        }
+        Self::resolve_in(Rc::clone(&self.arena), &open)
+    }
+
+    fn resolve_in(arena: Rc<Arena>, model: &Model) -> Result<Self, Vec<Diagnostic>> {
         let mut problems = Diagnostics::new();
-        let arena = Rc::new(Arena::within(budget));
         // In this order, so that results print parameters before states before inputs.
         let parameters = problems.all(model.parameters.iter().map(|entry| parameter(&arena, entry)));
         let names = |list: &[Spanned<String>]| -> Vec<Symbol> {

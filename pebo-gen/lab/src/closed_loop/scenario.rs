@@ -379,7 +379,7 @@ fn rates(
     baselines: &[ResolvedBaseline],
     problems: &mut Diagnostics,
 ) -> Option<Vec<Expr>> {
-    let (plant, arena) = (names.plant, &names.plant.arena);
+    let (plant, arena) = (truth.plant(names), &names.plant.arena);
     let rate = |symbol: Symbol, rate: Expr| if truth.gives(symbol) { arena.zero() } else { rate };
     let mut found: Vec<Expr> = plant.x.iter().map(|state| rate(state.symbol, state.rate.expr)).collect();
     for output in &plant.y {

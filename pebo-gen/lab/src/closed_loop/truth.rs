@@ -6,7 +6,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pebo_cas::{Expr, Symbol};
+use pebo_cas::{Expr, Rational, Symbol};
+use pebo_design::plant::Plant;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 
 use super::layout::{course, time};
@@ -19,12 +20,37 @@ pub(crate) struct Truth {
     numbers: BTreeMap<Symbol, Expr>,
     /// States and outputs given by value: formulas in the others, inputs and signals.
     given: BTreeMap<Symbol, Expr>,
+    /// The plant with its parameters that are zero in the model alone; none where there are none.
+    plant: Option<Plant>,
+}
+
+/// The plant with the parameters that have a course and are zero in the model, whose formulas are without them.
+fn real(names: &Names, problems: &mut Diagnostics) -> Option<Plant> {
+    let is_zero = |name: &str| {
+        let parameters = names.plant.parameters.iter();
+        let mut zeros = parameters.filter(|parameter| parameter.value.as_ref().is_some_and(Rational::is_zero));
+        zeros.any(|parameter| names.plant.arena.name(parameter.symbol) == name)
+    };
+    let courses = names.simulation.plant.iter().map(|entry| entry.name.value.as_str());
+    let zeros: Vec<&str> = courses.filter(|name| is_zero(name)).collect();
+    if zeros.is_empty() {
+        return None;
+    }
+    match names.plant.with_symbols(names.model, &zeros) {
+        Ok(plant) => Some(plant),
+        Err(found) => {
+            for problem in found {
+                problems.push(problem);
+            }
+            None
+        }
+    }
 }
 
 impl Truth {
     /// The truth of a simulation; contradictions are reported.
     pub(crate) fn resolve(names: &Names, problems: &mut Diagnostics) -> Self {
-        let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new() };
+        let mut truth = Self { numbers: names.numbers(), given: BTreeMap::new(), plant: real(names, problems) };
         // The plant uses the true time, not the samples of it that observers measure.
         let arena = &names.plant.arena;
         truth.numbers.extend(names.plant.time.map(|input| (input, arena.of_symbol(time(arena)))));
@@ -46,7 +72,7 @@ impl Truth {
     /// The plant of the model, with outputs given by value substituted; none where these are circular, which is
     /// reported with the truth.
     pub(crate) fn of_model(names: &Names) -> Option<Self> {
-        let mut model = Self { numbers: names.numbers(), given: BTreeMap::new() };
+        let mut model = Self { numbers: names.numbers(), given: BTreeMap::new(), plant: None };
         let mut circles = Diagnostics::new();
         model.values(names, &mut circles);
         (!circles.has_errors()).then_some(model)
@@ -77,8 +103,9 @@ impl Truth {
 
     /// Outputs given by value. A value may need others: each round substitutes one level of them.
     fn values(&mut self, names: &Names, problems: &mut Diagnostics) {
-        let (plant, arena) = (names.plant, &names.plant.arena);
-        let outputs = || plant.y.iter().filter(|output| output.value.is_some());
+        let arena = &names.plant.arena;
+        let written = self.plant.as_ref().unwrap_or(names.plant).y.clone();
+        let outputs = || written.iter().filter(|output| output.value.is_some());
         for output in outputs() {
             let value = output.value.map(|value| arena.substitute(value.expr, &self.numbers));
             self.given.extend(value.map(|value| (output.symbol, value)));
@@ -98,6 +125,11 @@ impl Truth {
                     .help("give one of them by the states and inputs, or by its rate under `f_y`"),
             );
         }
+    }
+
+    /// The plant as it is.
+    pub(crate) fn plant<'a>(&'a self, names: &Names<'a>) -> &'a Plant {
+        self.plant.as_ref().unwrap_or(names.plant)
     }
 
     /// True if this state or output is given by value, so that it is not integrated.

@@ -85,6 +85,22 @@ fn a_constant_state_steps_and_an_output_has_its_value() {
     assert!(error[199].abs() < 1e-3 && error[200].abs() > 0.9 && error[449].abs() < 1e-2, "{error:?}");
 }
 
+/// Proofs hold for the zero of the model; the plant has the parameter all the same.
+#[test]
+fn a_parameter_that_is_zero_in_the_model_moves_in_the_plant() {
+    let zero = with(LEVEL, "{k: 2, r: 3}", "{k: 2, r: 0}").replace("r: {0: 3, 4.5: 4}", "r: {0: 0, 4.5: 4}");
+    let [zero, small] = [zero.clone(), zero.replace("r: 0}\n", "r: 1e-12}\n")].map(|text| run(&text, &seeded(1)));
+    let [a, p, found] = ["a", "p", "a_hat"].map(|name| zero.column(name).unwrap());
+    let t = zero.column("t").unwrap();
+    for (row, t) in t.iter().enumerate() {
+        let r = if *t < 4.5 { 0.0 } else { 4.0 };
+        assert!((p[row] - a[row] - r).abs() < 1e-9, "{t}: {} {}", p[row], a[row]);
+    }
+    // The observer takes it for zero, or for next to zero.
+    let other = small.column("a_hat").unwrap();
+    assert!(found.iter().zip(&other).all(|(found, other)| (found - other).abs() < 1e-6));
+}
+
 #[test]
 fn a_contradictory_truth_is_refused() {
     for (text, code, message) in [
