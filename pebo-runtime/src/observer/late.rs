@@ -6,6 +6,7 @@
 use nalgebra::SVector;
 
 use super::{Innovation, Observer, StateOf, check};
+use crate::numeric::sum::all_finite;
 use crate::regression::Rows;
 use crate::samples::{Arrivals, Instant};
 use crate::{Estimator, Fault, Model, Real, RegressionOperator, Uncertain};
@@ -178,7 +179,9 @@ where
             self.arrivals.pass();
         }
         if self.past.terms().is_none() {
-            return Ok(self.past.estimate_at(y.map(|y| if Real::is_finite(y) { y } else { nalgebra::zero() })));
+            let there = y.map(|y| if Real::is_finite(y) { y } else { nalgebra::zero() });
+            let estimate: SVector<M::Scalar, NX> = self.past.estimate_at(there).into();
+            return if all_finite(&estimate) { Ok(estimate.into()) } else { Err(Fault::Estimate) };
         }
         let mut now = self.past.clone();
         let count = self.arrivals.count();

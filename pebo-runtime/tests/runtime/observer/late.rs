@@ -288,7 +288,9 @@ fn a_refused_sample_changes_nothing_and_a_saved_state_goes_on() {
         assert!(observer.step(y, [*u], 0.0).is_err());
         let estimate = observer.step(y, [*u], DT).unwrap();
         assert_eq!(other.step(y, [*u], DT).unwrap(), estimate);
+        // Before the first sample is whole the estimate is that of the start.
         assert_eq!(observer.estimate().is_some(), k >= 5);
+        assert_eq!(estimate == SVector::<f64, 2>::zeros(), k < 5, "{k}: {estimate}");
         if k == 40 {
             let (state, arrivals) = observer.state();
             let mut restored = self::observer::<f64, 16>(DT * 5.0, 0.0);
