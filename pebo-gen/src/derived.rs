@@ -200,10 +200,11 @@ impl Derived {
     pub fn fitted(
         &self,
         recording: (&str, &[u8]),
+        sought: &[String],
         watch: &mut dyn FnMut(u64) -> std::ops::ControlFlow<()>,
     ) -> Result<pebo_lab::recording::FittedNumbers, Vec<Diagnostic>> {
         self.derivation.admit().map_err(<[Diagnostic]>::to_vec)?;
-        pebo_lab::recording::fit((&self.model, &self.plant, &self.derivation), recording, watch)
+        pebo_lab::recording::fit((&self.model, &self.plant, &self.derivation), recording, sought, watch)
     }
 
     /// The observer of the model, ready to be run over recorded data with these columns.

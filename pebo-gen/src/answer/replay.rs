@@ -58,11 +58,13 @@ pub fn replay(source: &Source, request: &Request, tape: Tape<'_>) -> Answer {
 pub fn fitted(
     source: &Source,
     request: &Request,
-    recording: (&str, &[u8]),
+    (recording, sought): ((&str, &[u8]), &[String]),
     watch: &mut dyn FnMut(u64) -> ControlFlow<()>,
 ) -> Result<Option<FittedNumbers>, Vec<Diagnostic>> {
     match derive_within(source, request.budget()) {
-        Ok(derived) if derived.derivation.outcome == Outcome::Accepted => derived.fitted(recording, watch).map(Some),
+        Ok(derived) if derived.derivation.outcome == Outcome::Accepted => {
+            derived.fitted(recording, sought, watch).map(Some)
+        }
         _ => Ok(None),
     }
 }

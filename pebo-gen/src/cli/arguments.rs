@@ -266,9 +266,9 @@ pub(super) struct ReplayOptions {
     #[arg(long, value_name = "FILE.svg")]
     pub(super) plot: Option<PathBuf>,
     /// Find the standard deviations of sensors and disturbances that make the first rows most likely, run the observer
-    /// with them, and print its section `observer`
-    #[arg(long)]
-    pub(super) fit: bool,
+    /// with them, and print its section `observer`; `--fit=R,v` finds the parameter R and the delay of the output v too
+    #[arg(long, value_name = "NAME,..", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    pub(super) fit: Option<String>,
 }
 
 #[derive(Args)]

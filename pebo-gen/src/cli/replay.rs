@@ -22,7 +22,7 @@ pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
         let message = "model and recording cannot both be read from standard input";
         return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name one of them"));
     }
-    if options.fit && files::is_standard(&options.model) {
+    if options.fit.is_some() && files::is_standard(&options.model) {
         let message = "numbers cannot be fitted to a model on standard input, which is read twice";
         return standard::refuse(Diagnostic::error(Code::CannotRead, Span::NOWHERE, message).help("name its file"));
     }
@@ -41,11 +41,13 @@ fn replayed(options: &ReplayOptions, limit: Option<Limit>) -> Result<Standing, D
     let name = if is_standard { "standard input".to_owned() } else { options.data.display().to_string() };
     let mut settings = options.set.clone();
     let mut section = String::new();
-    if options.fit {
+    if let Some(sought) = &options.fit {
+        let sought: Vec<String> =
+            sought.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect();
         let head = head(&mut recording).map_err(|error| unreadable(&options.data, &error))?;
-        match fitted(options, limit, (&name, &head)) {
+        match fitted(options, limit, ((&name, &head), &sought)) {
             Ok(Some(found)) => {
-                settings.extend(found.parts().iter().map(|(key, value)| format!("observer.{key}={value}")));
+                settings.extend(found.settings());
                 section = found.section();
             }
             Ok(None) => {}
@@ -119,7 +121,7 @@ fn head(recording: &mut Box<dyn Read>) -> io::Result<Vec<u8>> {
 fn fitted(
     options: &ReplayOptions,
     limit: Option<Limit>,
-    rows: (&str, &[u8]),
+    (rows, sought): ((&str, &[u8]), &[String]),
 ) -> Result<Option<FittedNumbers>, Standing> {
     let Ok(source) = files::read_with(&options.model, &options.set) else { return Ok(None) };
     let (begun, most) = (Instant::now(), limit.map(|limit| Duration::from_secs_f64(limit.0)));
@@ -127,7 +129,7 @@ fn fitted(
         Some(most) if begun.elapsed() > most => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
-    pebo_gen::fitted(&source, &limit.unwrap_or_default().request(), rows, &mut watch).map_err(|found| {
+    pebo_gen::fitted(&source, &limit.unwrap_or_default().request(), (rows, sought), &mut watch).map_err(|found| {
         terminal::report(&found, &source);
         Standing::Malformed
     })

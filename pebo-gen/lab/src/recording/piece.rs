@@ -289,9 +289,9 @@ impl<'a> Piece<'a> {
         self.expected.add(t, predicted);
     }
 
-    /// The logarithm of the likelihood of the judged samples.
-    pub(super) fn likelihood(&self) -> Option<f64> {
-        self.driver.likelihood()
+    /// The logarithm of the likelihood of the judged samples, and their number.
+    pub(super) fn likelihood(&self) -> Option<(f64, f64)> {
+        Some((self.driver.likelihood()?, crate::timing::real(self.driver.judged())))
     }
 
     /// The reasons for which the observer refused samples.

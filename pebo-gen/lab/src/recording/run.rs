@@ -40,11 +40,13 @@ impl Replay {
         machine.finish()
     }
 
-    /// The logarithm of the likelihood of all samples, but for a constant; none where the observer does not say.
-    pub(super) fn likelihood(&self, log: &mut Log) -> Option<f64> {
+    /// The logarithm of the likelihood of all samples, but for a constant, and the number of innovations behind it; none
+    /// where the observer does not say.
+    pub(super) fn likelihood(&self, log: &mut Log) -> Option<(f64, f64)> {
         let mut machine = ReplayState::start(self, None, true).ok()?;
         machine.rows(log, &mut |_, _| ControlFlow::Continue(())).ok()?;
-        Some(machine.likelihood + machine.piece.likelihood()?)
+        let ((before, judged), (last, more)) = (machine.likelihood, machine.piece.likelihood()?);
+        Some((before + last, judged + more))
     }
 }
 
@@ -57,8 +59,8 @@ struct ReplayState<'a, 'w> {
     values: Vec<f64>,
     piece: Piece<'a>,
     judges_each: bool,
-    /// The logarithm of the likelihood of the pieces before.
-    likelihood: f64,
+    /// The logarithm of the likelihood of the pieces before, and the number of innovations behind it.
+    likelihood: (f64, f64),
     /// Lines and cells of the rows that are astray.
     held: Vec<(u64, Vec<f64>)>,
     /// The result of the longest piece before the present one.
@@ -82,7 +84,7 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             values: vec![0.0; signals.program.outputs.len()],
             piece: Piece::start(replay, judges_each)?,
             judges_each,
-            likelihood: 0.0,
+            likelihood: (0.0, 0.0),
             held: Vec::new(),
             longest: None,
             offset: 0.0,
@@ -168,7 +170,8 @@ impl<'a, 'w> ReplayState<'a, 'w> {
         self.curves.interrupt(self.offset);
         let result = self.piece.finish();
         self.keep(result);
-        self.likelihood += self.piece.likelihood().unwrap_or_default();
+        let (before, judged) = self.piece.likelihood().unwrap_or_default();
+        self.likelihood = (self.likelihood.0 + before, self.likelihood.1 + judged);
         self.piece = Piece::start(self.replay, self.judges_each)?;
         let held = std::mem::take(&mut self.held);
         if let Some((line, _)) = held.first() {

@@ -13,11 +13,18 @@ use crate::recording::{FittedNumbers, fit};
 
 /// The numbers of a model that fit a recording.
 fn numbers(model: &str, csv: &str) -> Result<FittedNumbers, Vec<Diagnostic>> {
+    with(model, csv, &[])
+}
+
+/// The same with parameters and delays that are sought besides.
+fn with(model: &str, csv: &str, sought: &[&str]) -> Result<FittedNumbers, Vec<Diagnostic>> {
+    let sought: Vec<String> = sought.iter().map(|name| (*name).to_owned()).collect();
     let source = Source::new("test", model).expect("a short text");
     let model = Model::parse(&source)?;
     let plant = Plant::resolve(&model)?;
     let derivation = Derivation::derive(&plant);
-    fit((&model, &plant, &derivation), ("log.csv", csv.as_bytes()), &mut |_| ControlFlow::Continue(()))
+    let rows = ("log.csv", csv.as_bytes());
+    fit((&model, &plant, &derivation), rows, &sought, &mut |_| ControlFlow::Continue(()))
 }
 
 #[test]
@@ -51,4 +58,33 @@ fn fitted_numbers_are_those_of_the_simulation() {
     // Gains are no numbers.
     let gains = format!("{GROWTH}observer: {{gain: 1, filter: 1}}\n");
     assert!(numbers(&gains, &csv).is_err_and(|found| found[0].message.contains("written gains")));
+}
+
+/// A drive with a load that nobody measures, and a speed that is.
+const DRIVE: &str = "model: drive\nparameters: {J: 0.02, K: 0.5, d: 0.1}\nx: [T]\ny: [w]\nu: [i]\nunits: {T: N m}\n\
+                     f_x: {T: 0}\nf_y: {w: (K*i - d*w - T)/J}\nphi: [T]\n\
+                     observer: {start: {T: 1}, disturbance: {T: 0}}\n";
+
+#[test]
+fn parameters_and_delays_are_found_where_they_are_sought() {
+    let scenario = "simulation: {duration: 3, step: 0.01, initial: {T: 0.3, w: 0}, noise: {w: 0.05}, delay: {w: 0.07}, \
+                    control: {i: 1 + sin(2*t) + 0.5*sin(7*t)}}\n";
+    let csv = simulated(&format!("{DRIVE}{scenario}"), (3.0, 0.01)).csv();
+    // Who does not know it takes the inertia for a half more than it is, and the sensor for one on time.
+    let wrong = DRIVE.replace("J: 0.02", "J: 0.03");
+    let found = with(&wrong, &csv, &["J", "w"]).unwrap();
+    let [(name, inertia)] = found.parameters.as_slice() else { panic!("{found:?}") };
+    assert!(name == "J" && (inertia / 0.02 - 1.0).abs() < 0.02, "{found:?}");
+    assert_eq!(found.delay.len(), 1, "{found:?}");
+    assert!(found.delay[0].0 == "w" && (found.delay[0].1 - 0.07).abs() < 1e-9, "{found:?}");
+    assert!((found.sensors[0].1 / 0.05 - 1.0).abs() < 0.15, "{found:?}");
+    assert!(found.section().contains("delay: {w: 0.07"), "{}", found.section());
+    assert!(found.section().contains("parameters:\n  J: 2.0"), "{}", found.section());
+    // Of a sensor on time, none is found.
+    let csv = simulated(&format!("{DRIVE}{}", scenario.replace("delay: {w: 0.07}, ", "")), (3.0, 0.01)).csv();
+    assert_eq!(with(DRIVE, &csv, &["w"]).unwrap().delay, []);
+    for (sought, message) in [("M", "`M` is neither a parameter nor an output"), ("T", "`T` is neither")] {
+        let problems = with(DRIVE, &csv, &[sought]).unwrap_err();
+        assert!(problems[0].message.contains(message) && problems[0].help.is_some(), "{problems:?}");
+    }
 }
