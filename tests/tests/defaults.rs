@@ -167,6 +167,7 @@ fn a_late_sample_counts_for_the_time_that_it_is_of() {
         assert!(told < 1.5 * on_time, "{state}: {told} {on_time} {}", late.text());
         assert!(untold > 3.0 * told && kalman > 3.0 * told, "{state}: {told} {untold} {kalman}");
     }
+    // Of each sixteenth of a thousand samples, some sixty of two rows: a mean of 125 squares scatters by 0.13.
     let surprise = late.surprise.unwrap();
     assert!((surprise - 1.0).abs() < 0.2, "{}", late.text());
 }

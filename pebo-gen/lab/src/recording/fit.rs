@@ -126,8 +126,7 @@ pub fn fit(
         Search { model: silent, plant, derivation, still, name, rows, watch, count: 0, judged: None, stopped: false };
     let (mut start, guess) = search.guess()?;
     // First of all: while these are wrong, disturbances stand in for them.
-    let mut numbers =
-        sought.iter().map(|name| search.sought(name)).collect::<Result<Vec<_>, _>>().map_err(|d| vec![d])?;
+    let mut numbers = sought.iter().map(|name| search.sought(name)).collect::<Result<Vec<_>, _>>()?;
     numbers.extend(guess);
     for (name, deviation) in &mut start {
         let known = written.iter().find(|entry| entry.name.value == *name);
@@ -300,38 +299,39 @@ impl Search<'_> {
     }
 
     /// The parameter or the delay of the output that is sought by this name.
-    fn sought(&self, name: &str) -> Result<Number, Diagnostic> {
-        let span = self.model.name.span;
-        let Ok((replay, _)) = self.replay(&self.model, self.plant) else { return Err(unlikely(span)) };
-        let arena = &self.plant.arena;
+    fn sought(&self, name: &str) -> Result<Number, Vec<Diagnostic>> {
+        let (span, arena) = (self.model.name.span, &self.plant.arena);
+        let refused = |code: Code, message: String, help: &str| {
+            Err(vec![Diagnostic::error(code, span, message).help(help.to_owned())])
+        };
+        let name = name.to_owned();
         if let Some(parameter) = self.plant.parameters.iter().find(|known| arena.name(known.symbol) == name) {
             let value = parameter.value.as_ref().map(Rational::to_f64).filter(|value| *value != 0.0);
+            let help = "give it one of the right sign and size: the proofs hold for this sign";
             return match value {
-                Some(value) => Ok(Number { name: name.to_owned(), value, least: 0.0, kind: Kind::Parameter }),
-                None => {
-                    Err(Diagnostic::error(Code::SettingConflict, span, format!("`{name}` has no value to begin with"))
-                        .help("give it one of the right sign and size: the proofs hold for this sign"))
-                }
+                Some(value) => Ok(Number { name, value, least: 0.0, kind: Kind::Parameter }),
+                None => refused(Code::SettingConflict, format!("`{name}` has no value to begin with"), help),
             };
         }
-        match (self.model.y.iter().any(|output| output.value == name), replay.period()) {
-            (true, Some(period)) => {
-                let written = self.model.observer.delay.of(name).map_or(0.0, |delay| delay.value.to_f64());
-                let value = (written / period).round() * period;
-                Ok(Number { name: name.to_owned(), value, least: 0.0, kind: Kind::Delay(period) })
-            }
-            (true, None) => {
-                Err(Diagnostic::error(Code::SimulationIncomplete, span, "the period of the samples is not known")
-                    .help("say it, as `simulation: {step: 1e-3}`: a delay is sought in whole periods"))
-            }
-            (false, _) => {
-                let parameters = self.plant.parameters.iter().map(|parameter| arena.name(parameter.symbol));
-                let names: Vec<String> = parameters.chain(self.model.y.iter().map(|y| y.value.clone())).collect();
-                let message = format!("`{name}` is neither a parameter nor an output");
-                Err(Diagnostic::error(Code::UnknownEntry, span, message)
-                    .help(format!("there are {}", listed(names.iter().map(String::as_str)))))
-            }
+        if !self.model.y.iter().any(|output| output.value == name) {
+            let parameters = self.plant.parameters.iter().map(|parameter| arena.name(parameter.symbol));
+            let names: Vec<String> = parameters.chain(self.model.y.iter().map(|y| y.value.clone())).collect();
+            let help = format!("there are {}", listed(names.iter().map(String::as_str)));
+            return refused(Code::UnknownEntry, format!("`{name}` is neither a parameter nor an output"), &help);
         }
+        let Some(period) = self.replay(&self.model, self.plant)?.0.period() else {
+            let help = "say it, as `simulation: {step: 1e-3}`: a delay is sought in whole periods";
+            return refused(Code::SimulationIncomplete, "the period of the samples is not known".to_owned(), help);
+        };
+        // An output that cannot be late is refused here, with the reason.
+        let mut late = self.model.clone();
+        late.observer.delay.each.retain(|entry| entry.name.value != name);
+        late.observer.delay.each.extend(entry(&name, period));
+        let sought = |found: Diagnostic| found.note(format!("a delay of `{name}` was to be fitted"));
+        self.replay(&late, self.plant).map_err(|found| found.into_iter().map(sought).collect::<Vec<_>>())?;
+        let written = self.model.observer.delay.of(&name).map_or(0.0, |delay| delay.value.to_f64());
+        let value = (written / period).round() * period;
+        Ok(Number { name, value, least: 0.0, kind: Kind::Delay(period) })
     }
 
     /// The logarithm of the likelihood of the rows with these numbers, as of so many samples as the first replay judged; none where there is no observer with them, or the

@@ -43,14 +43,19 @@ pub(super) fn late(
         return Ok(None);
     }
     let equations = Equations::of(plant, regression, kind);
-    let is_expected: Vec<bool> = plant.y.iter().map(|output| equations.expecting(plant, output.symbol)).collect();
     let rows = equations.samples.iter().zip(&equations.sources).map(|(equation, sources)| {
         // Without the latest of its outputs an equation says nothing yet.
         let own = (0..plant.y.len()).filter(|output| equation.has(plant, plant.y[*output].symbol));
         let latest = own.reduce(|late, output| if delays[output] > delays[late] { output } else { late });
         latest.or(sources.first().copied()).unwrap_or(0)
     });
-    let rows = rows.collect();
+    let rows: Vec<usize> = rows.collect();
+    // By the same row as in a run: the first that waits for the output.
+    let expects = |output: usize| {
+        let row = rows.iter().position(|row| *row == output);
+        row.is_some_and(|row| equations.samples[row].expects(plant, plant.y[output].symbol))
+    };
+    let is_expected: Vec<bool> = (0..plant.y.len()).map(expects).collect();
     for (output, measured) in plant.y.iter().enumerate().filter(|(output, _)| !delays[*output].is_zero()) {
         let name = arena.name(measured.symbol);
         let lacking = if kind == ObserverKind::Filtered {
@@ -100,6 +105,12 @@ impl Equation {
         let own = BTreeSet::from([output]);
         self.factors.iter().any(|factor| plant.arena.depends_on(*factor, &own))
     }
+
+    /// True if it is `output = ..`, so that it says what the output is.
+    fn expects(&self, plant: &Plant, output: Symbol) -> bool {
+        let slope = plant.arena.as_number(plant.arena.derivative(self.known, output));
+        slope == Some(Rational::ONE) && !self.has_in_factor(plant, output)
+    }
 }
 
 impl Equations {
@@ -125,15 +136,6 @@ impl Equations {
             sources: regression.sources.clone(),
             rates: of_rates.flat_map(|(known, factors)| std::iter::once(known).chain(factors)).copied().collect(),
         }
-    }
-
-    /// True if an equation expects an output: the first that has it.
-    fn expecting(&self, plant: &Plant, output: Symbol) -> bool {
-        let first = self.samples.iter().find(|equation| equation.has(plant, output));
-        first.is_some_and(|equation| {
-            let slope = plant.arena.as_number(plant.arena.derivative(equation.known, output));
-            slope == Some(Rational::ONE) && !equation.has_in_factor(plant, output)
-        })
     }
 }
 

@@ -229,6 +229,12 @@ fn a_late_output_that_drives_the_observer_has_an_equation_of_its_own() {
                    simulation: {step: 0.1, initial: {p: 1, q: 1}, control: {v: 0.1}}\n";
     let found = late(bearing).unwrap();
     assert_eq!((found.rows, found.is_expected), (vec![0], vec![false]));
+    // An equation of two outputs waits for the later one, and expects the other no more than that.
+    let sum = "model: m\nx: [p]\ny: [a, b]\nu: [v]\nf_x: {p: v - a}\nidentities: [a + b - p]\nphi: [p]\n\
+               observer: {sensors: {a: 0.1, b: 0.1}, start: {p: 1}, delay: {a: 0.1, b: 0.2}}\n\
+               simulation: {step: 0.1, initial: {p: 1, a: 1, b: 0}, control: {v: 0.1}}\n";
+    let problems = late(sum).unwrap_err();
+    assert!(problems[0].message.contains("`a` cannot be late: the observer needs it"), "{problems:?}");
     // With a drift along it the observer needs the bearing of now.
     let problems = late(&bearing.replace("p: -v", "p: -v*cos(b)")).unwrap_err();
     assert!(problems[0].message.contains("`b` cannot be late: the observer needs it"), "{problems:?}");

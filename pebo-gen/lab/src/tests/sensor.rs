@@ -172,6 +172,22 @@ fn faults_are_counted_and_the_run_goes_on() {
 }
 
 #[test]
+fn a_sample_that_arrives_after_the_run_is_refused() {
+    let late = |delay: &str| {
+        let known =
+            format!("observer: {{sensors: {{q: 0.1}}, start: {{v: 1}}, disturbance: {{v: 0}}, delay: {delay}}}");
+        with(SPRING, "observer: {gain: 50, filter: 5}", &known)
+    };
+    let found = resolve(&late("{q: 10}"), &Overrides::default()).expect_err("a run of 10 s");
+    let hit =
+        found.iter().find(|d| d.code == Code::NumberOutOfRange && d.message.contains("does not arrive within 10"));
+    assert!(hit.is_some_and(|d| d.help.is_some()), "{found:#?}");
+    // The sensor of the run is as late as the observer is told.
+    let [ideal, delayed] = [SPRING.to_owned(), late("{q: 0.05}")].map(|text| column(&sampled(&text, 1), "q"));
+    assert_eq!(delayed[100].to_bits(), ideal[95].to_bits());
+}
+
+#[test]
 fn impossible_sensors_are_refused() {
     for (more, code, message) in [
         ("bias: {v: 1}", Code::UnknownEntry, "`v` under `bias` is not an output of y"),

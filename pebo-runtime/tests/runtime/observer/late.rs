@@ -139,6 +139,9 @@ fn samples_count_for_the_time_that_they_are_of() {
         let ignored = last_error::<16>(late, 0.0);
         assert!(ignored > 0.01, "{late}: {ignored}");
     }
+    // Of more than 128 on their way some are taken as one, with the mean of an input that moves by 0.07 in a period.
+    let joined = last_error::<204>(200, DT * 200.0);
+    assert!(joined < 0.02, "{joined}");
     // With more samples on their way than there is room for, the newest are joined, and the input with them.
     let short = last_error::<8>(10, DT * 10.0);
     assert!(short < 0.02, "{short}");
