@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::numeric::dense::product;
 use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression, Sides};
 
 /// The output form of a model with a dynamic regression.
@@ -140,28 +141,26 @@ where
         z: &SVector<M::Scalar, NW>,
     ) -> Flow<M::Scalar, NW> {
         const { assert!(NW + M::INSTANTS == NR + NZ, "the unknowns are those of the outputs with rates and those of z") };
+        let rates = NW - NZ;
         let inner = self.model.flow(terms, u);
         // At the extension's start `z = theta`: the regression is then known as a function of z.
         let start = M::Extension::new(SVector::zeros());
         let rate = self.model.regression(&start, terms, u);
         let held = self.model.primitive(&start, terms);
         let slopes = self.model.output_slopes(terms, u, &SVector::from_fn(|i, _| z[NW - NZ + i]));
-        let known = rate.known - slopes.rates * held.known;
-        let h = inner.h - slopes.cascade * held.known;
-        let factor = rate.factor - slopes.rates * held.factor;
-        let plain = inner.lambda - slopes.cascade * held.factor;
-        let rates = NW - NZ;
-        let lambda = SMatrix::from_fn(|i, j| match (i.checked_sub(rates), j.checked_sub(rates)) {
-            (None, None) => slopes.rates[(i, j)],
-            (None, Some(j)) => factor[(i, j)],
-            (Some(i), None) => slopes.cascade[(i, j)],
-            (Some(i), Some(j)) => plain[(i, j)],
-        });
-        let h = SVector::from_fn(|i, _| match i.checked_sub(rates) {
-            None => known[i],
-            Some(i) => h[i],
-        });
-        Flow { lambda, h }
+        let known = rate.known - product(&slopes.rates, &held.known);
+        let h = inner.h - product(&slopes.cascade, &held.known);
+        let factor = rate.factor - product(&slopes.rates, &held.factor);
+        let plain = inner.lambda - product(&slopes.cascade, &held.factor);
+        let mut flow = Flow { lambda: SMatrix::zeros(), h: SVector::zeros() };
+        fill(&mut flow.h.data.0[0], &known.data.0[0], &h.data.0[0], rates);
+        for (j, column) in flow.lambda.data.0.iter_mut().enumerate() {
+            match j.checked_sub(rates) {
+                None => fill(column, &slopes.rates.data.0[j], &slopes.cascade.data.0[j], rates),
+                Some(j) => fill(column, &factor.data.0[j], &plain.data.0[j], rates),
+            }
+        }
+        flow
     }
 
     fn regression(
@@ -185,7 +184,7 @@ where
             None => nalgebra::zero(),
             Some(j) => -held.factor[(i, j)],
         });
-        Sides { known: held.known - through * extension.xi(), factor: through * extension.psi() }
+        Sides { known: held.known - product(&through, extension.xi()), factor: product(&through, extension.psi()) }
     }
 
     fn theta(&self, eta: &SVector<M::Scalar, NW>) -> SVector<M::Scalar, NW> {
@@ -231,4 +230,12 @@ impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, cons
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
 {
+}
+
+/// Makes a column of as many entries of the outputs with rates, and then those of the cascade.
+#[inline]
+fn fill<S: Real, const NW: usize>(column: &mut [S; NW], outputs: &[S], cascade: &[S], rates: usize) {
+    for (entry, &value) in column.iter_mut().zip(outputs.iter().take(rates).chain(cascade)) {
+        *entry = value;
+    }
 }

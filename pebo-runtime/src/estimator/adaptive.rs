@@ -132,8 +132,8 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Adaptiv
             innovations[row] = rest * Real::sqrt(weight);
             shares[row] = share;
         };
-        self.squares.diffuse(&self.guess, self.factor * dt);
-        self.squares.take(regressor, regressand, dt, seen)?;
+        let noise = self.squares.noise() + self.guess * self.factor;
+        self.squares.take(regressor, regressand, dt, &noise, seen)?;
         self.learn(&innovations, &shares);
         let [step, in_step] = [STEP, IN_STEP].map(<S as Real>::from_f64);
         if self.since < in_step {

@@ -1,7 +1,5 @@
 //! Weighted least squares, one equation after another, in triangular form.
 
-use core::cmp::Ordering;
-
 use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::sum::all_finite;
@@ -19,8 +17,8 @@ use crate::{Fault, Real, Turn};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Information<S: Real, const N: usize> {
-    /// U above its diagonal.
-    upper: SMatrix<S, N, N>,
+    /// `U^T`: column `i` is row `i` of U, with its 1 on the diagonal.
+    rows: SMatrix<S, N, N>,
     weight: SVector<S, N>,
     /// The right side of `U d = target`.
     target: SVector<S, N>,
@@ -35,7 +33,7 @@ impl<S: Real, const N: usize> Information<S, N> {
         let weight = variances.map(|variance| S::one() / variance);
         let positive = |&number: &S| number > S::zero() && Real::is_finite(number);
         if variances.iter().all(positive) && weight.iter().all(positive) {
-            Ok(Self { upper: SMatrix::zeros(), weight, target: SVector::zeros() })
+            Ok(Self { weight, ..Self::vague() })
         } else {
             Err(Fault::Gain)
         }
@@ -77,9 +75,9 @@ impl<S: Real, const N: usize> Information<S, N> {
             for i in (0..j).rev() {
                 let mut inverse = v[(i, j)];
                 for k in i + 1..j {
-                    inverse += v[(i, k)] * information.upper[(k, j)];
+                    inverse += v[(i, k)] * information.rows[(j, k)];
                 }
-                information.upper[(i, j)] = -inverse;
+                information.rows[(j, i)] = -inverse;
             }
         }
         if information.is_finite() { Ok(information) } else { Err(Fault::Gain) }
@@ -102,9 +100,10 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// estimator comes here.
     #[inline]
     fn rotate<const VAGUE: bool>(&mut self, row: &SVector<S, N>, value: S, weight: S) -> (S, S) {
-        let (mut row, mut value, mut weight) = (*row, value, weight);
+        let [mut row] = row.data.0;
+        let (mut value, mut weight) = (value, weight);
         for i in 0..N {
-            let lead = row[i];
+            let (above, lead) = (&mut self.rows.data.0[i], row[i]);
             if lead != S::zero() {
                 let before = self.weight[i];
                 let after = before + weight * lead * lead;
@@ -117,13 +116,17 @@ impl<S: Real, const N: usize> Information<S, N> {
                 self.weight[i] = after;
                 weight *= kept;
                 for k in i + 1..N {
-                    let (entry, above) = (row[k], self.upper[(i, k)]);
-                    row[k] = entry - lead * above;
-                    self.upper[(i, k)] = kept * above + taken * entry;
+                    let (entry_before, above_before) = (row[k], above[k]);
+                    row[k] = entry_before - lead * above_before;
+                    above[k] = kept * above_before + taken * entry_before;
                 }
                 let (entry, above) = (value, self.target[i]);
                 value = entry - lead * above;
                 self.target[i] = kept * above + taken * entry;
+                // Of a row that was all there was of a component, nothing is left.
+                if VAGUE && weight == S::zero() {
+                    break;
+                }
             }
         }
         (value, weight)
@@ -131,16 +134,25 @@ impl<S: Real, const N: usize> Information<S, N> {
 
     /// The same problem in `d_new = T d`: each row times `T^-1`.
     pub fn turn(&mut self, turn: &Turn<S, N>) {
-        let mut turned = Self { upper: SMatrix::zeros(), weight: SVector::zeros(), target: SVector::zeros() };
+        let before = core::mem::replace(self, Self::vague());
         for i in 0..N {
-            let row = self.row(i);
-            let row = row + turn.of_factor(&row);
-            turned.rotate::<true>(&row.transpose(), self.target[i], self.weight[i]);
+            let whole = &before.rows.data.0[i];
+            let mut row = *whole;
+            for (entry, lost) in row.iter_mut().zip(&turn.lost.data.0) {
+                for (&factor, &lost) in whole.iter().zip(lost) {
+                    *entry -= factor * lost;
+                }
+            }
+            self.rotate::<true>(&SVector::from(row), before.target[i], before.weight[i]);
         }
         // A component that dies out is known ever better; the cap keeps its weight from overflowing, a fault for ever.
         let most = S::max_value().map_or(S::one() / S::EPSILON, |largest| largest * S::EPSILON);
-        turned.diffuse_beyond(&SVector::repeat(most));
-        *self = turned;
+        self.diffuse_beyond(&SVector::repeat(most));
+    }
+
+    /// No equation.
+    fn vague() -> Self {
+        Self { rows: SMatrix::identity(), weight: SVector::zeros(), target: SVector::zeros() }
     }
 
     /// Takes no component for known better than with its weight here, given those after it.
@@ -158,36 +170,37 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// for discrete sequential estimation*, 1977, chapter VI (the square-root information filter's time update).
     pub fn diffuse(&mut self, i: usize, variance: S) {
         let mut variance = variance;
-        let mut above = SMatrix::<S, 1, N>::zeros();
+        let mut above = [S::zero(); N];
         let mut above_target = S::zero();
-        for r in (0..=i).rev() {
-            let (row, target, weight) = (self.row(r), self.target[r], self.weight[r]);
+        let equations = self.rows.data.0.iter_mut().zip(self.weight.as_mut_slice()).zip(self.target.as_mut_slice());
+        for (r, ((row, weight), target)) in equations.enumerate().rev().filter(|(r, _)| *r <= i) {
             let Some(&lead) = row.get(i).filter(|&&lead| lead != S::zero()) else { continue };
-            let against = variance * weight * lead * lead;
+            let across = variance * *weight * lead;
+            let against = across * lead;
             // Where the product overflows, the step is all that is known of the component.
             let known = Real::is_finite(against);
             let kept = if known { S::one() / (S::one() + against) } else { S::zero() };
-            let taken = if known { -(against * kept) / lead } else { -S::one() / lead };
-            let left = if known { weight * kept } else { S::one() / variance / (lead * lead) };
-            let reduced = row + above * lead;
-            for k in r + 1..N {
-                self.upper[(r, k)] = reduced[k];
+            let taken = if known { -(across * kept) } else { -S::one() / lead };
+            *weight = if known { *weight * kept } else { S::one() / variance / (lead * lead) };
+            for (k, (entry, above)) in row.iter_mut().zip(&mut above).enumerate() {
+                if k > r {
+                    let (entry_before, above_before) = (*entry, *above);
+                    *entry = entry_before + above_before * lead;
+                    *above = above_before * kept + entry_before * taken;
+                } else if k == r {
+                    *above = taken;
+                }
             }
-            self.target[r] = target + lead * above_target;
-            self.weight[r] = left;
-            above = above * kept + row * taken;
-            above_target = above_target * kept + target * taken;
+            let target_before = *target;
+            *target += lead * above_target;
+            above_target = above_target * kept + target_before * taken;
             variance *= kept;
         }
     }
 
     /// Row `i` of `U`; none of its entries are left of `i`.
-    fn row(&self, i: usize) -> SMatrix<S, 1, N> {
-        SMatrix::from_fn(|_, k| match k.cmp(&i) {
-            Ordering::Less => S::zero(),
-            Ordering::Equal => S::one(),
-            Ordering::Greater => self.upper[(i, k)],
-        })
+    fn row(&self, i: usize) -> SVector<S, N> {
+        self.rows.column(i).into_owned()
     }
 
     /// Multiplies every weight by a factor, `factor > 0`; the vector that fits best stays the same.
@@ -198,8 +211,7 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// Adds the equations of another problem, with their right sides, its weights multiplied by `factor >= 0`.
     pub fn absorb_information(&mut self, other: &Self, factor: S) {
         for i in 0..N {
-            let row = other.row(i).transpose();
-            self.absorb(&row, other.target[i], factor * other.weight[i]);
+            self.absorb(&other.row(i), other.target[i], factor * other.weight[i]);
         }
     }
 
@@ -208,11 +220,10 @@ impl<S: Real, const N: usize> Information<S, N> {
     /// Where the weights say nothing of a component of `s`, its own weight is 0, and it is 0 in what fits best.
     #[must_use]
     pub fn along<const M: usize>(&self, offset: &SVector<S, N>, slopes: &SMatrix<S, N, M>) -> Information<S, M> {
-        let mut along = Information { upper: SMatrix::zeros(), weight: SVector::zeros(), target: SVector::zeros() };
+        let mut along = Information::vague();
         for i in 0..N {
             let row = self.row(i);
-            let [right] = (row * offset).data.0[0];
-            along.rotate::<true>(&(row * slopes).transpose(), self.target[i] - right, self.weight[i]);
+            along.rotate::<true>(&slopes.tr_mul(&row), self.target[i] - row.dot(offset), self.weight[i]);
         }
         along
     }
@@ -221,8 +232,7 @@ impl<S: Real, const N: usize> Information<S, N> {
     pub fn misfit(&self, d: &SVector<S, N>) -> S {
         let mut misfit = S::zero();
         for i in 0..N {
-            let [value] = (self.row(i) * d).data.0[0];
-            let rest = value - self.target[i];
+            let rest = self.row(i).dot(d) - self.target[i];
             misfit += self.weight[i] * rest * rest;
         }
         misfit
@@ -252,7 +262,7 @@ impl<S: Real, const N: usize> Information<S, N> {
         let mut solution = self.target;
         for i in (0..N).rev() {
             for k in i + 1..N {
-                let known = self.upper[(i, k)] * solution[k];
+                let known = self.rows[(k, i)] * solution[k];
                 solution[i] -= known;
             }
         }
@@ -265,9 +275,9 @@ impl<S: Real, const N: usize> Information<S, N> {
         let mut root = SMatrix::identity();
         for j in 0..N {
             for i in (0..j).rev() {
-                let mut entry = self.upper[(i, j)];
+                let mut entry = self.rows[(j, i)];
                 for k in i + 1..j {
-                    entry += self.upper[(i, k)] * root[(k, j)];
+                    entry += self.rows[(k, i)] * root[(k, j)];
                 }
                 root[(i, j)] = -entry;
             }
@@ -286,7 +296,7 @@ impl<S: Real, const N: usize> Information<S, N> {
 
     /// True if every number of the state is finite.
     pub fn is_finite(&self) -> bool {
-        all_finite(&self.upper) && all_finite(&self.weight) && all_finite(&self.target)
+        all_finite(&self.rows) && all_finite(&self.weight) && all_finite(&self.target)
     }
 }
 

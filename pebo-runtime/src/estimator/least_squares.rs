@@ -4,6 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{Estimator, Information, Uncertain};
 use crate::numeric::decay::Decay;
+use crate::numeric::dense::product;
 use crate::numeric::sum::{Sum, all_finite};
 use crate::{Fault, Real, Turn};
 
@@ -98,6 +99,11 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
         self.theta.value()
     }
 
+    /// The intensity of the process noise of each component.
+    pub(super) fn noise(&self) -> &SVector<S, NE> {
+        &self.noise
+    }
+
     /// `R = P^-1`, in triangular form.
     pub fn information(&self) -> &Information<S, NE> {
         &self.information
@@ -113,7 +119,7 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
         }
     }
 
-    /// A step; `seen` gets of each row what it says beyond the estimate and the rows before it, the weight of that, and its
+    /// A step over which the unknown wanders by these intensities; `seen` gets of each row what it says beyond the estimate and the rows before it, the weight of that, and its
     /// share of the row's own weight.
     #[inline]
     pub(super) fn take<const NR: usize>(
@@ -121,6 +127,7 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
         regressor: &SMatrix<S, NR, NE>,
         regressand: &SVector<S, NR>,
         dt: S,
+        noise: &SVector<S, NE>,
         mut seen: impl FnMut(usize, S, S, S),
     ) -> Result<(), Fault> {
         let share = self.forgetting.over(dt);
@@ -130,11 +137,11 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
             self.information.scale(S::one() - share.lost);
             self.information.absorb_information(&self.floor, share.lost);
         }
-        let noise = self.noise;
-        self.diffuse(&noise, dt);
-        let innovation = regressand - regressor * self.theta.value();
-        for (index, (row, &error)) in regressor.row_iter().zip(innovation.iter()).enumerate() {
-            let (rest, weight) = self.information.absorb_with_rest(&row.transpose(), error, share.taken);
+        self.diffuse(noise, dt);
+        let innovation = regressand - product(regressor, self.theta.value());
+        let rows = regressor.transpose();
+        for (index, (row, &error)) in rows.column_iter().zip(innovation.iter()).enumerate() {
+            let (rest, weight) = self.information.absorb_with_rest(&row.into_owned(), error, share.taken);
             seen(index, rest, weight, weight / share.taken);
         }
         self.theta.add(&self.information.take_solution()?);
@@ -144,7 +151,8 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
 
 impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSquares<S, NE> {
     fn advance(&mut self, regressor: &SMatrix<S, NR, NE>, regressand: &SVector<S, NR>, dt: S) -> Result<(), Fault> {
-        self.take(regressor, regressand, dt, |_, _, _, _| {})
+        let noise = self.noise;
+        self.take(regressor, regressand, dt, &noise, |_, _, _, _| {})
     }
 
     fn estimate(&self) -> SVector<S, NE> {
@@ -165,7 +173,7 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
         self.theta.add(&turn.of_unknown(self.theta.value()));
         self.information.turn(turn);
         // Where a component dies out faster than others, those known best and least would leave each other no digits.
-        self.information.diffuse_beyond(&(self.floor.weight() / (S::EPSILON * S::EPSILON)));
+        self.information.diffuse_beyond(&(self.floor.weight() * (S::one() / (S::EPSILON * S::EPSILON))));
     }
 
     fn reset(&mut self, estimate: &SVector<S, NE>) {

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::numeric::dense::product;
 use crate::numeric::linear::solve;
 use crate::{Fault, Real, Sum};
 
@@ -11,8 +12,8 @@ use crate::{Fault, Real, Sum};
 /// them keep the digits that products with the matrices would lose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn<S: Real, const N: usize> {
-    gained: SMatrix<S, N, N>,
-    lost: SMatrix<S, N, N>,
+    pub(crate) gained: SMatrix<S, N, N>,
+    pub(crate) lost: SMatrix<S, N, N>,
 }
 
 impl<S: Real, const N: usize> Turn<S, N> {
@@ -25,6 +26,11 @@ impl<S: Real, const N: usize> Turn<S, N> {
         Ok(Self { gained, lost: solve(*matrix.value(), gained)? })
     }
 
+    /// No change.
+    pub(crate) fn nothing() -> Self {
+        Self { gained: SMatrix::zeros(), lost: SMatrix::zeros() }
+    }
+
     /// The change of the first `M` unknowns, where the others are not mixed with them.
     #[must_use]
     pub fn leading<const M: usize>(&self) -> Turn<S, M> {
@@ -35,12 +41,12 @@ impl<S: Real, const N: usize> Turn<S, N> {
 
     /// The increment of an estimate of the unknown: `(matrix - 1) eta`.
     pub fn of_unknown<const C: usize>(&self, eta: &SMatrix<S, N, C>) -> SMatrix<S, N, C> {
-        self.gained * eta
+        product(&self.gained, eta)
     }
 
     /// The increment of a factor of the unknown: `factor (matrix^-1 - 1)`.
     pub fn of_factor<const R: usize>(&self, factor: &SMatrix<S, R, N>) -> SMatrix<S, R, N> {
-        -(factor * self.lost)
+        -product(factor, &self.lost)
     }
 
     /// The increment of a sum of products of a factor and a known side: `(matrix^-T - 1) correlation`.

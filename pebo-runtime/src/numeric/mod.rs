@@ -1,6 +1,7 @@
-//! Numerical kernels: the scalar's functions, compensated sums, small linear systems.
+//! Numerical kernels: the scalar's functions, compensated sums, products of small matrices, small linear systems.
 
 pub(crate) mod decay;
+pub(crate) mod dense;
 mod double;
 pub(crate) mod eigenvalue;
 pub(crate) mod exponential;

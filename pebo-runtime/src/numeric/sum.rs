@@ -31,7 +31,8 @@ impl<S: Real, const R: usize, const C: usize> Sum<S, R, C> {
 
     /// Adds `increment`.
     pub fn add(&mut self, increment: &SMatrix<S, R, C>) {
-        for ((value, carry), &increment) in self.value.iter_mut().zip(self.carry.iter_mut()).zip(increment.iter()) {
+        let sums = self.value.as_mut_slice().iter_mut().zip(self.carry.as_mut_slice());
+        for ((value, carry), &increment) in sums.zip(increment.as_slice()) {
             let sum = *value + increment;
             let taken = sum - *value;
             let lost = (*value - (sum - taken)) + (increment - taken);
@@ -85,5 +86,6 @@ pub(crate) fn as_blemish<S: Real>(finite: bool) -> S {
 /// keeps. Two instructions an element and one branch at the end, where comparing each takes eight and a branch.
 #[inline]
 pub(crate) fn blemish<S: Real, const R: usize, const C: usize>(matrix: &SMatrix<S, R, C>) -> S {
-    matrix.iter().map(|&element| element * S::zero()).reduce(|sum, zero| sum + zero).unwrap_or(S::zero())
+    let zeros = matrix.as_slice().iter().map(|&element| element * S::zero());
+    zeros.reduce(|sum, zero| sum + zero).unwrap_or(S::zero())
 }

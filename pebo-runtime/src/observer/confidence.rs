@@ -6,6 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::errors_in_variables::Taken;
 use super::{Observer, check, constrained};
 use crate::estimator::Information;
 use crate::extension::Extension;
@@ -193,7 +194,10 @@ where
         }
         check(&y, u, dt)?;
         let terms = self.model.terms(&y);
+        if let Some((trigger, step)) = self.rebasing {
+            return step(self, trigger, terms, &Taken { y: &y, u: [u, u], dt, left_out, without: Rows::without });
+        }
         let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
-        self.finish((extension, regression.without(&left_out)), terms, (&y, u, dt), &left_out)
+        self.finish((extension, regression.without(&left_out)), terms, &y, dt)
     }
 }

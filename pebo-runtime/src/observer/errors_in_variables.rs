@@ -5,7 +5,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::rebasing::{StepOf, Turn};
+use super::rebasing::{StepOf, Trigger};
 use super::{Next, Observer, State};
 use crate::numeric::sum::all_finite;
 use crate::{Estimator, Fault, Model, Real, RegressionOperator, Sides, Uncertain};
@@ -40,7 +40,7 @@ type Corrected<
 > = fn(
     &O,
     Led<'_, <M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, E, R>,
-    &Taken<'_, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY, NU, NR>,
+    &TakenBy<'_, M, R, NX, NY, NU, NZ, NR, NE>,
     &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>,
 ) -> Option<StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>>;
 
@@ -54,11 +54,14 @@ pub(super) struct Led<'a, X, E, R> {
 
 /// A sample at the end of an interval, with the rows that are left out for its missing outputs.
 #[derive(Clone, Copy)]
-pub(super) struct Taken<'a, S: Real, const NY: usize, const NU: usize, const NR: usize> {
+pub(super) struct Taken<'a, S: Real, Step, const NY: usize, const NU: usize, const NR: usize> {
     pub(super) y: &'a SVector<S, NY>,
-    pub(super) u: &'a SVector<S, NU>,
+    /// The input at both ends.
+    pub(super) u: [&'a SVector<S, NU>; 2],
     pub(super) dt: S,
     pub(super) left_out: [bool; NR],
+    /// A regression without these rows.
+    pub(super) without: fn(Step, &[bool; NR]) -> Step,
 }
 
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
@@ -88,20 +91,19 @@ where
         if !sensors.iter().all(is_deviation) {
             return Err(Fault::Gain);
         }
-        // The end of a step that is re-based corrects too.
-        let rebasing = self.rebasing.or(Some((Turn::Never, Self::end_corrected)));
+        // The step that is re-based corrects too.
+        let rebasing = self.rebasing.or(Some((Trigger::Never, Self::step_corrected)));
         Ok(Self { correction: Some((*sensors, Self::corrected)), rebasing, ..self })
     }
 
-    /// The end of a step without re-basing.
-    fn end_corrected(
+    /// A step without re-basing.
+    fn step_corrected(
         &mut self,
-        _: Turn<M::Scalar>,
-        led: (M::Extension, R::Step),
+        _: Trigger<M::Scalar>,
         terms: M::Terms,
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let Next { extension, regression, estimator } = self.next(led, sample)?;
+        let Next { extension, regression, estimator } = self.next(self.led(&terms, sample)?, sample)?;
         let mut moved = State { extension, estimator, ..self.state.clone() };
         moved.regression.take(regression);
         self.keep(moved, terms, sample.y)
@@ -111,7 +113,7 @@ where
     fn corrected(
         &self,
         Led { extension, estimator, regression }: Led<'_, M::Extension, E, R>,
-        &Taken { y, u, dt, left_out }: &Taken<'_, M::Scalar, NY, NU, NR>,
+        &Taken { y, u: [_, u], dt, left_out, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
         sensors: &SVector<M::Scalar, NY>,
     ) -> Option<R::Step> {
         let model = &self.model;
@@ -127,6 +129,26 @@ where
         is_finite.then(|| regression.step([&linearised; 2], dt))
     }
 }
+
+/// A sample of a model's observer.
+pub(super) type TakenBy<
+    'a,
+    M,
+    R,
+    const NX: usize,
+    const NY: usize,
+    const NU: usize,
+    const NZ: usize,
+    const NR: usize,
+    const NE: usize,
+> = Taken<
+    'a,
+    <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar,
+    StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>,
+    NY,
+    NU,
+    NR,
+>;
 
 /// The equations of a sample, as functions of its outputs.
 struct Equations<'a, F, S: Real, const NY: usize, const NE: usize> {

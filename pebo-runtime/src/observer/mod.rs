@@ -8,7 +8,7 @@ mod rebasing;
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::extension::Extension;
+use crate::extension::{Extension, Flow};
 use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
 use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator, unwrapped};
@@ -72,8 +72,8 @@ pub struct Observer<
     state: State<M::Scalar, M::Extension, R, E, NY>,
     /// The terms of the last accepted sample; there if and only if that sample is.
     terms: Option<M::Terms>,
-    /// The end of a step that is re-based or corrected, with its trigger. That end is compiled only where either is asked
-    /// for, and the rest of a step without it has no second caller.
+    /// The step that is re-based or corrected, with its trigger. It is compiled only where either is asked for, and the step
+    /// without it has no second caller.
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
     /// The standard deviations of the sensors and the correction by them, where their noise is in the factor too.
     correction: Option<Correction<Self, M, E, R, NX, NY, NU, NZ, NR, NE>>,
@@ -263,24 +263,26 @@ where
         let Some(before) = &self.terms else {
             return self.begin(terms, y);
         };
+        // Handed over as copies, so that all may stay in registers where there is no re-basing.
+        if let Some((trigger, step)) = self.rebasing {
+            let (y, [u_before, u_after]) = (*y, [*u[0], *u[1]]);
+            let u = [&u_before, &u_after];
+            let sample = Taken { y: &y, u, dt, left_out: [false; NR], without: |regression, _| regression };
+            return step(self, trigger, terms, &sample);
+        }
         let (extension, regression) = self.propagate([before, &terms], u, dt)?;
-        self.finish((extension, regression), terms, (y, u[1], dt), &[false; NR])
+        self.finish((extension, regression), terms, y, dt)
     }
 
-    /// The end of a step, from extension and regression at the end of the interval.
+    /// The end of a step that is neither re-based nor corrected, from extension and regression at the end of the interval.
     #[inline]
     fn finish(
         &mut self,
         (extension, regression): (M::Extension, R::Step),
         terms: M::Terms,
-        (y, u, dt): (&SVector<M::Scalar, NY>, &SVector<M::Scalar, NU>, M::Scalar),
-        left_out: &[bool; NR],
+        y: &SVector<M::Scalar, NY>,
+        dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        // Handed over as a copy, so that both may stay in registers where there is no re-basing.
-        if let Some((turn, end)) = self.rebasing {
-            let sample = Taken { y, u, dt, left_out: *left_out };
-            return end(self, turn, (extension, regression), terms, &sample);
-        }
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
         self.constrain(&mut estimator);
@@ -291,7 +293,7 @@ where
     fn next(
         &self,
         (extension, regression): (M::Extension, R::Step),
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<Next<M::Extension, R::Step, E>, Fault> {
         let equations = Sides { known: regression.regressand(), factor: regression.regressor() };
         let before = (&extension, &self.state.regression);
@@ -305,7 +307,7 @@ where
         before: E,
         (extension, regression): (&M::Extension, &R),
         equations: &Sides<M::Scalar, NR, NE>,
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<(E, Option<R::Step>), Fault> {
         let Some((sensors, corrected)) = &self.correction else {
             return Ok((self.learned(before, equations, sample.dt)?, None));
@@ -409,13 +411,8 @@ where
         let model = &self.model;
         let start = &self.state.extension;
         let mut end = *start;
-        let (before_it, after_it) = if M::LINEARISED {
-            let z = start.coordinates(&self.theta());
-            (model.flow_near(before, u_before, &z), model.flow_near(after, u_after, &z))
-        } else {
-            (model.flow(before, u_before), model.flow(after, u_after))
-        };
-        end.advance(&before_it, &after_it, dt)?;
+        let z = if M::LINEARISED { start.coordinates(&self.theta()) } else { SVector::zeros() };
+        end.advance(&self.flow(before, u_before, &z), &self.flow(after, u_after, &z), dt)?;
 
         let mut sides = [model.regression(start, before, u_before), model.regression(&end, after, u_after)];
         if M::REGRESSION == Regression::Dynamic {
@@ -433,6 +430,23 @@ where
             }
         }
         Ok((end, self.state.regression.step(sides.each_ref(), dt)))
+    }
+
+    /// The flow at one end of an interval, of a model that linearises it at these coordinates.
+    #[inline]
+    fn flow(&self, terms: &M::Terms, u: &SVector<M::Scalar, NU>, z: &SVector<M::Scalar, NZ>) -> Flow<M::Scalar, NZ> {
+        if M::LINEARISED { self.model.flow_near(terms, u, z) } else { self.model.flow(terms, u) }
+    }
+
+    /// Extension and regression at the end of a sample's interval, of an observer that has one before.
+    fn led(
+        &self,
+        terms: &M::Terms,
+        &Taken { u, dt, ref left_out, without, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Result<(M::Extension, R::Step), Fault> {
+        let before = self.terms.as_ref().ok_or(Fault::State)?;
+        let (extension, regression) = self.propagate([before, terms], u, dt)?;
+        Ok((extension, without(regression, left_out)))
     }
 
     /// The estimate of the state that goes with an output.

@@ -5,14 +5,14 @@
 
 use nalgebra::SVector;
 
-use super::errors_in_variables::Taken;
+use super::errors_in_variables::{Taken, TakenBy};
 use super::{Next, Observer, State, check};
 use crate::numeric::sum::all_finite;
-use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, RegressionOperator, Sides};
+use crate::{Drift, Estimator, Extension, Fault, Model, Real, Rebase, Regression, RegressionOperator, Sides};
 
 /// The trigger of re-basing.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Turn<S: Real> {
+pub(super) enum Trigger<S: Real> {
     /// None: the step is corrected alone.
     Never,
     /// This number of samples since the last time.
@@ -21,9 +21,8 @@ pub(super) enum Turn<S: Real> {
     Drift(Drift<S>),
 }
 
-/// The end of a step of an observer `O` that starts its extension again: from its trigger, extension and regression at
-/// the end of the interval, terms of the sample and the sample.
-type End<
+/// The step of an observer `O` that starts its extension again: from its trigger, terms of the sample and the sample.
+type Step<
     O,
     M,
     R,
@@ -35,13 +34,12 @@ type End<
     const NE: usize,
 > = fn(
     &mut O,
-    Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>,
-    (<M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>),
+    Trigger<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>,
     <M as Model<NX, NY, NU, NZ, NR, NE>>::Terms,
-    &Taken<'_, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY, NU, NR>,
+    &TakenBy<'_, M, R, NX, NY, NU, NZ, NR, NE>,
 ) -> Result<SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NX>, Fault>;
 
-/// The trigger of re-basing, and the end of a step that does so.
+/// The trigger of re-basing, and the step that does so.
 pub(super) type Rebasing<
     O,
     M,
@@ -52,7 +50,7 @@ pub(super) type Rebasing<
     const NZ: usize,
     const NR: usize,
     const NE: usize,
-> = (Turn<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, End<O, M, R, NX, NY, NU, NZ, NR, NE>);
+> = (Trigger<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, Step<O, M, R, NX, NY, NU, NZ, NR, NE>);
 
 /// The state after an interval, if there was one.
 type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
@@ -92,7 +90,7 @@ where
         if every == 0 {
             return Err(Fault::Gain);
         }
-        Ok(Self { rebasing: Some((Turn::Samples(every), Self::end_rebasing)), ..self })
+        Ok(Self { rebasing: Some((Trigger::Samples(every), Self::step_rebasing)), ..self })
     }
 
     /// The same observer, each step of which is [`step_without_drift`](Self::step_without_drift); in place of
@@ -102,7 +100,7 @@ where
     /// [`Fault::Gain`] if the bound is not positive, or the rate of the leak negative, or either NaN.
     pub fn without_drift(self, drift: Drift<M::Scalar>) -> Result<Self, Fault> {
         drift.is_due(&SVector::<M::Scalar, NZ>::zeros())?;
-        Ok(Self { rebasing: Some((Turn::Drift(drift), Self::end_without_drift)), ..self })
+        Ok(Self { rebasing: Some((Trigger::Drift(drift), Self::step_drifting)), ..self })
     }
 
     /// Moves `shift` from the extension into the estimated `theta`; the estimate of the state, now and later, stays the
@@ -153,14 +151,11 @@ where
         drift: Drift<M::Scalar>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let terms = self.model.terms(y);
-        let next = match &self.terms {
-            Some(before) => {
-                let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
-                Some(self.next((extension, regression), &Taken { y, u, dt, left_out: [false; NR] })?)
-            }
-            None => None,
-        };
-        self.move_by_drift(drift, next, (terms, y), dt)
+        if self.terms.is_none() {
+            return self.move_by_drift(drift, None, (terms, y), dt);
+        }
+        let sample = Taken { y, u: [u, u], dt, left_out: [false; NR], without: |regression, _| regression };
+        self.step_drifting(Trigger::Drift(drift), terms, &sample)
     }
 
     /// Takes the state after a sample, and moves a shift where the form asks for one.
@@ -189,53 +184,122 @@ where
         self.keep(moved, terms, y)
     }
 
-    /// The end of a step of an observer whose steps are all without drift.
-    fn end_without_drift(
+    /// A step of an observer whose steps are all without drift.
+    fn step_drifting(
         &mut self,
-        turn: Turn<M::Scalar>,
-        led: (M::Extension, StepOf<R, M::Scalar, NR, NZ>),
+        trigger: Trigger<M::Scalar>,
         terms: M::Terms,
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let Turn::Drift(drift) = turn else { return Err(Fault::Gain) };
-        let next = self.next(led, sample)?;
+        let Trigger::Drift(drift) = trigger else { return Err(Fault::Gain) };
+        let next = self.next(self.led(&terms, sample)?, sample)?;
         self.move_by_drift(drift, Some(next), (terms, sample.y), sample.dt)
     }
 
-    /// The end of a step of an observer that starts its extension again. The coordinates change before the estimator's
-    /// step, so process noise is that of the moment.
-    fn end_rebasing(
+    /// A step of an observer that starts its extension again. The coordinates change before the estimator's step, so
+    /// process noise is that of the moment.
+    fn step_rebasing(
         &mut self,
-        turn: Turn<M::Scalar>,
-        (extension, regression): (M::Extension, R::Step),
+        trigger: Trigger<M::Scalar>,
         terms: M::Terms,
-        sample: &Taken<'_, M::Scalar, NY, NU, NR>,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let Turn::Samples(every) = turn else { return Err(Fault::Gain) };
-        let mut moved = State { extension, since: self.state.since.saturating_add(1), ..self.state.clone() };
-        moved.regression.take(regression);
-        if moved.since >= every {
-            moved.onto_estimate()?;
-            moved.since = 0;
+        let Trigger::Samples(every) = trigger else { return Err(Fault::Gain) };
+        let before = self.state.clone();
+        match self.rebased(every, &terms, sample) {
+            Ok(estimate) => {
+                self.state.y = Some(*sample.y);
+                self.terms = Some(terms);
+                Ok(estimate)
+            }
+            Err(fault) => {
+                self.state = before;
+                Err(fault)
+            }
+        }
+    }
+
+    /// The same, in place: after a fault the state is unspecified.
+    fn rebased(
+        &mut self,
+        every: u32,
+        terms: &M::Terms,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        if every == 1 && M::REGRESSION == Regression::Static && !self.state.regression.remembers() {
+            self.move_anew(terms, sample)?;
+        } else {
+            self.move_rebasing(every, terms, sample)?;
+        }
+        let state = &mut self.state;
+        let equations = Sides { known: state.regression.regressand(), factor: state.regression.regressor() };
+        if self.correction.is_none() {
+            state.estimator.advance(&equations.factor, &equations.known, sample.dt)?;
+        } else {
+            let before = (&self.state.extension, &self.state.regression);
+            let (estimator, corrected) = self.estimated(self.state.estimator.clone(), before, &equations, sample)?;
+            self.state.estimator = estimator;
+            if let Some(outcome) = corrected {
+                self.state.regression.take(outcome);
+            }
+        }
+        if !(self.state.regression.is_finite() && self.state.estimator.is_finite()) {
+            return Err(Fault::State);
+        }
+        let theta = self.model.theta(&self.state.estimator.estimate());
+        let estimate = self.model.recover(&self.state.extension.coordinates(&theta), terms);
+        if all_finite(&estimate) { Ok(estimate) } else { Err(Fault::Estimate) }
+    }
+
+    /// Goes to the end of an interval, before the estimator's step, of an observer that starts its extension again at every
+    /// sample and whose regression has no past: the coordinates are those of the moment from the beginning.
+    fn move_anew(
+        &mut self,
+        terms: &M::Terms,
+        &Taken { u: [u_before, u_after], dt, ref left_out, without, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Result<(), Fault> {
+        let before = self.terms.as_ref().ok_or(Fault::State)?;
+        let estimate = self.state.estimator.estimate();
+        let z = self.state.extension.coordinates(&estimate);
+        let start = self.flow(before, u_before, &z);
+        let end = self.flow(terms, u_after, &z);
+        let State { extension, regression, estimator, .. } = &mut self.state;
+        extension.rebase(&-estimate);
+        estimator.shift(&-estimate);
+        extension.advance_anew(&start, &end, dt, |turn| estimator.turn(turn))?;
+        // The fundamental matrix is the identity.
+        if !all_finite(extension.offset()) {
+            return Err(Fault::State);
+        }
+        let sides = self.model.regression(extension, terms, u_after);
+        let step = regression.step([&sides; 2], dt);
+        regression.take(without(step, left_out));
+        Ok(())
+    }
+
+    /// The same of any other.
+    fn move_rebasing(
+        &mut self,
+        every: u32,
+        terms: &M::Terms,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Result<(), Fault> {
+        let (extension, regression) = self.led(terms, sample)?;
+        let state = &mut self.state;
+        state.extension = extension;
+        state.regression.take(regression);
+        state.since = state.since.saturating_add(1);
+        if state.since >= every {
+            state.onto_estimate()?;
+            state.since = 0;
             // A regression whose past dies out more slowly than `Psi` grows without end in the coordinates of the
             // moment. Started again it holds as well.
             let most = largest_regressor::<M::Scalar>();
-            if moved.regression.regressor().iter().any(|&entry| Real::abs(entry) > most) {
-                moved.regression.reset();
+            if state.regression.regressor().iter().any(|&entry| Real::abs(entry) > most) {
+                state.regression.reset();
             }
         }
-        if self.correction.is_none() {
-            moved.estimator.advance(&moved.regression.regressor(), &moved.regression.regressand(), sample.dt)?;
-            return self.keep(moved, terms, sample.y);
-        }
-        let State { extension, regression, estimator, .. } = moved;
-        let equations = Sides { known: regression.regressand(), factor: regression.regressor() };
-        let (estimator, corrected) = self.estimated(estimator, (&extension, &regression), &equations, sample)?;
-        let mut moved = State { extension, regression, estimator, ..moved };
-        if let Some(outcome) = corrected {
-            moved.regression.take(outcome);
-        }
-        self.keep(moved, terms, sample.y)
+        if state.extension.is_finite() { Ok(()) } else { Err(Fault::State) }
     }
 }
 

@@ -58,6 +58,11 @@ pub trait RegressionOperator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// Starts again with nothing: `0 = 0 eta`.
     fn reset(&mut self);
 
+    /// True if a step depends on anything but the sides at its end, so that memory has to follow a change of the unknown.
+    fn remembers(&self) -> bool {
+        true
+    }
+
     /// True if every number of the state is finite.
     fn is_finite(&self) -> bool;
 }

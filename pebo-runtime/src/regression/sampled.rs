@@ -85,6 +85,10 @@ impl<S: Real, const NR: usize, const NE: usize> RegressionOperator<S, NR, NE> fo
         self.regressor = SMatrix::zeros();
     }
 
+    fn remembers(&self) -> bool {
+        false
+    }
+
     fn is_finite(&self) -> bool {
         self.blemish() == S::zero()
     }

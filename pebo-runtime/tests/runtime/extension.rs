@@ -90,8 +90,9 @@ fn constant_flow_is_exact() {
         let mut extension = Fundamental::new(Vector2::zeros());
         advance(&mut extension, &spiral(), steps, 1.0 / f64::from(steps));
         let psi = rotation(3.0) * (-0.5_f64).exp();
-        // |q|^7/1e5 a step, with |q| <= 1 after halving: less than rounding from 0.02 on.
-        let tolerance = 3e-5 * (3.0 / f64::from(steps)).powi(6).min(1.0) + 1e-14;
+        // |q|^10/3628800 a step, with |q| <= 1 after halving, of numbers up to 2.
+        let size = (3.04 / f64::from(steps)).min(1.0);
+        let tolerance = 2.0 * f64::from(steps) * size.powi(10) / 3_628_800.0 + 1e-13;
         assert!((extension.psi() - psi).norm() < tolerance, "{steps}");
         assert!((extension.xi() - exact(1.0)).norm() < tolerance, "{steps}");
     }
@@ -101,6 +102,40 @@ fn constant_flow_is_exact() {
     // e^-50 keeps its sign and its first digits: 1e-5 of the rate, fifty of it.
     assert!((stiff.psi().x / (-50.0_f64).exp() - 1.0).abs() < 5e-4, "{}", stiff.psi().x);
     assert!((stiff.xi().x - 2.0).abs() < 1e-14);
+}
+
+#[test]
+fn starting_anew_is_an_advance_and_its_turn() {
+    // From steps whose third power is below rounding to ones that are halved, in units that differ by 1000.
+    for step in [1e-6, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0] {
+        let lambda = Matrix2::new(-0.3, 2000.0, -0.002, 0.1) * step;
+        let flow = flow(lambda, Vector2::new(0.5, -0.001));
+        let start = Vector2::new(1.0, 0.003);
+        let [mut plain, mut anew] = [Fundamental::new(start); 2];
+        plain.advance(&flow, &flow, 1.0).unwrap();
+        let turn = plain.take_turn().unwrap().unwrap();
+        let mut followed = None;
+        anew.advance_anew(&flow, &flow, 1.0, |turn| followed = Some(*turn)).unwrap();
+        assert_eq!(anew, plain, "{step}");
+        // A factor of the unknown has gone by the inverse: some roundings of e^2 in units of its own, and beyond |q| = 0.1
+        // |q|^10/3628800 of three entries, twice.
+        let tolerance =
+            1e-14 * (2.0 * step).exp() + if step > 0.05 { 2e-6 * (2.0 * step).powi(10).min(1.0) } else { 0.0 };
+        let factor = Matrix2::new(1.0, 1000.0, 0.001, 1.0);
+        let difference = turn.of_factor(&factor) - followed.unwrap().of_factor(&factor);
+        let scaled = difference.component_div(&factor).norm();
+        assert!(scaled <= tolerance, "{step}: {scaled:e} of {tolerance:e}");
+    }
+}
+
+#[test]
+fn long_steps_are_halved_where_their_powers_overflow() {
+    let flow = Flow { lambda: Matrix1::new(-1e10_f32), h: Vector1::new(2e10) };
+    let mut extension = Fundamental::new(Vector1::new(1.0));
+    extension.advance(&flow, &flow, 1.0).unwrap();
+    // Rest, to the rounding of the sum over the halved steps.
+    assert!((extension.xi().x - 2.0).abs() < 1e-4, "{}", extension.xi().x);
+    assert!(extension.psi().x.abs() < f32::MIN_POSITIVE);
 }
 
 /// The spiral from 0.
@@ -153,4 +188,6 @@ fn step_beyond_all_bounds_is_a_fault() {
     let mut extension = Fundamental::new(Vector2::new(1.0, 1.0));
     extension.advance(&stable, &stable, 1.0).unwrap();
     assert_eq!(extension.take_turn(), Err(Fault::Singular));
+    let mut extension = Fundamental::new(Vector2::new(1.0, 1.0));
+    assert_eq!(extension.advance_anew(&stable, &stable, 1.0, |_| ()), Err(Fault::Singular));
 }

@@ -88,6 +88,14 @@ impl<const N: usize> RegressionOperator<f64, N, N> for PaddedOperator<N> {
         }
     }
 
+    fn remembers(&self) -> bool {
+        match self {
+            Self::Filtered(filtered) => filtered.remembers(),
+            Self::Windowed(window) => window.remembers(),
+            Self::Sampled(sampled) => sampled.remembers(),
+        }
+    }
+
     fn is_finite(&self) -> bool {
         match self {
             Self::Filtered(filtered) => filtered.is_finite(),

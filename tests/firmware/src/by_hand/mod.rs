@@ -5,6 +5,7 @@
 
 pub mod arm;
 pub mod cuk;
+pub mod induction;
 pub mod motor;
 
 /// A number and the rounding error of its summation.
