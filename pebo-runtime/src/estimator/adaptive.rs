@@ -30,7 +30,7 @@ use crate::{Fault, Real, Turn};
 /// Source: whiteness of the innovations as the mark of the best gain: Mehra, *On the identification of variances and
 /// adaptive Kalman filtering*, IEEE TAC, 1970; a rate that follows the sign of successive corrections: Jacobs, *Increased
 /// rates of convergence through learning rate adaptation*, Neural Networks, 1988.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveLeastSquares<S: Real, const NR: usize, const NE: usize> {
     /// With the process noise that is known.
@@ -73,6 +73,13 @@ const IN_STEP: f64 = 1000.0;
 /// The bounds of the factor. It begins at the lower one, with a thousandth of the guessed deviation: an unknown is taken
 /// for constant until samples contradict that.
 const RANGE: [f64; 2] = [1e-6, 1.0];
+
+#[allow(clippy::expl_impl_clone_on_copy, reason = "as one block: member by member each matrix is copied twice")]
+impl<S: Real, const NR: usize, const NE: usize> Clone for AdaptiveLeastSquares<S, NR, NE> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 
 impl<S: Real, const NR: usize, const NE: usize> AdaptiveLeastSquares<S, NR, NE> {
     /// The same estimator with a guess of what the unknown wanders beyond its process noise, which is known, as the noise

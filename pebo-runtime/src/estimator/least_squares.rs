@@ -39,7 +39,7 @@ use crate::{Fault, Real, Turn};
 /// Source: Slotine and Li, *Applied nonlinear control*, 1991, chapter 8 (least squares with exponential forgetting);
 /// the bound by an inflow of `R_0`: Gunnarsson, *Combining tracking and regularization in recursive least squares
 /// identification*, CDC 1996.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LeastSquares<S: Real, const NE: usize> {
     /// `R`, with the right side 0 between steps.
@@ -50,6 +50,13 @@ pub struct LeastSquares<S: Real, const NE: usize> {
     /// The intensity of the process noise of each component.
     noise: SVector<S, NE>,
     theta: Sum<S, NE, 1>,
+}
+
+#[allow(clippy::expl_impl_clone_on_copy, reason = "as one block: member by member each matrix is copied twice")]
+impl<S: Real, const NE: usize> Clone for LeastSquares<S, NE> {
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 impl<S: Real, const NE: usize> LeastSquares<S, NE> {

@@ -46,8 +46,8 @@ impl<S: Real, const N: usize> Propagator<S, N> {
         }
         add_product(&mut fourth, &square, &square);
         let largest_4 = largest_row(&fourth);
-        if largest_4 > S::one() {
-            let halvings = halvings_of(size_in_any_units(q))?;
+        let halvings = if largest_4 > S::one() { halvings_of(size_in_any_units(q))? } else { 0 };
+        if halvings > 0 {
             let share = Real::powi(real(0.5), halvings.cast_signed());
             *q *= share;
             *rate *= share;

@@ -205,7 +205,9 @@ where
         sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let Trigger::Samples(every) = trigger else { return Err(Fault::Gain) };
-        let before = self.state.clone();
+        // What can be copied as one block is.
+        let State { y, extension, ref regression, ref estimator, since } = self.state;
+        let before = State { y, extension, regression: regression.clone(), estimator: estimator.clone(), since };
         match self.rebased(every, &terms, sample) {
             Ok(estimate) => {
                 self.state.y = Some(*sample.y);
