@@ -126,8 +126,8 @@ impl<S: Real, const NE: usize> LeastSquares<S, NE> {
         }
     }
 
-    /// A step over which the unknown wanders by these intensities; `seen` gets of each row what it says beyond the estimate and the rows before it, the weight of that, and its
-    /// share of the row's own weight.
+    /// A step over which the unknown wanders by these intensities; `seen` gets of each row what it says beyond the estimate
+    /// and the rows before it, the weight of that, and its share of the row's own weight.
     #[inline]
     pub(super) fn take<const NR: usize>(
         &mut self,
