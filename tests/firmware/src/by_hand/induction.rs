@@ -137,12 +137,14 @@ fn flow([i1, i2, omega, psi1, psi2]: [f32; 5], p: &[State; 6]) -> [State; 6] {
     let turning = N_P * omega;
     let mut ahead = [[0.0; 6]; 6];
     for k in 0..6 {
-        let [of_i1, of_i2, of_omega, of_psi1, of_psi2, of_load] = [p[0][k], p[1][k], p[2][k], p[3][k], p[4][k], p[5][k]];
+        let [of_i1, of_i2, of_omega, of_psi1, of_psi2, of_load] =
+            [p[0][k], p[1][k], p[2][k], p[3][k], p[4][k], p[5][k]];
         let p1 = BROUGHT * of_i1 - FADING * of_psi1 - turning * of_psi2 - N_P * psi2 * of_omega;
         let p2 = BROUGHT * of_i2 - FADING * of_psi2 + turning * of_psi1 + N_P * psi1 * of_omega;
         ahead[0][k] = -INV_L * R_S * of_i1 - SHARE * p1;
         ahead[1][k] = -INV_L * R_S * of_i2 - SHARE * p2;
-        ahead[2][k] = TORQUE * (psi1 * of_i2 + i2 * of_psi1 - psi2 * of_i1 - i1 * of_psi2) - INV_J * (of_load + B * of_omega);
+        ahead[2][k] =
+            TORQUE * (psi1 * of_i2 + i2 * of_psi1 - psi2 * of_i1 - i1 * of_psi2) - INV_J * (of_load + B * of_omega);
         ahead[3][k] = p1;
         ahead[4][k] = p2;
     }

@@ -31,8 +31,11 @@ impl Plant for Induction {
         let mut state = [0.0, 0.0, 0.0, 0.3, -0.2, 2.0];
         // Three turns of the voltage to one of the sines: 48 Hz.
         waves().map(move |(sine, cosine)| {
-            let u = [310.0 * (4.0 * cosine * cosine * cosine - 3.0 * cosine), 310.0 * (3.0 * sine - 4.0 * sine * sine * sine)];
-            // Four steps of Euler's rule in each of ten parts.
+            let u = [
+                310.0 * (4.0 * cosine * cosine * cosine - 3.0 * cosine),
+                310.0 * (3.0 * sine - 4.0 * sine * sine * sine),
+            ];
+            // Forty steps of Euler's rule.
             for _ in 0..40 {
                 let rate = rate(state, u);
                 state.iter_mut().zip(rate).for_each(|(x, rate)| *x += DT / 40.0 * rate);
