@@ -64,6 +64,14 @@ pub(super) struct Taken<'a, S: Real, Step, const NY: usize, const NU: usize, con
     pub(super) without: fn(Step, &[bool; NR]) -> Step,
 }
 
+impl<'a, S: Real, Step, const NY: usize, const NU: usize, const NR: usize> Taken<'a, S, Step, NY, NU, NR> {
+    /// A sample with all outputs.
+    #[inline]
+    pub(super) fn whole(y: &'a SVector<S, NY>, u: [&'a SVector<S, NU>; 2], dt: S) -> Self {
+        Self { y, u, dt, left_out: [false; NR], without: |regression, _| regression }
+    }
+}
+
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
     Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
 where

@@ -267,8 +267,7 @@ where
         if let Some((trigger, step)) = self.rebasing {
             let (y, [u_before, u_after]) = (*y, [*u[0], *u[1]]);
             let u = [&u_before, &u_after];
-            let sample = Taken { y: &y, u, dt, left_out: [false; NR], without: |regression, _| regression };
-            return step(self, trigger, terms, &sample);
+            return step(self, trigger, terms, &Taken::whole(&y, u, dt));
         }
         let (extension, regression) = self.propagate([before, &terms], u, dt)?;
         self.finish((extension, regression), terms, y, dt)
@@ -366,17 +365,26 @@ where
         if !is_none(next.extension.blemish() + next.regression.blemish() + next.estimator.blemish()) {
             return Err(Fault::State);
         }
-        let theta = self.model.theta(&next.estimator.estimate());
-        let estimate = self.model.recover(&next.extension.coordinates(&theta), &terms);
-        if !all_finite(&estimate) {
-            return Err(Fault::Estimate);
-        }
+        let estimate = self.recovered(&next.extension, &next.estimator, &terms)?;
         self.state.y = Some(*y);
         self.state.extension = next.extension;
         self.state.regression.take(next.regression);
         self.state.estimator = next.estimator;
         self.terms = Some(terms);
         Ok(estimate)
+    }
+
+    /// The estimate of the state, if it is finite.
+    #[inline]
+    fn recovered(
+        &self,
+        extension: &M::Extension,
+        estimator: &E,
+        terms: &M::Terms,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let theta = self.model.theta(&estimator.estimate());
+        let estimate = self.model.recover(&extension.coordinates(&theta), terms);
+        if all_finite(&estimate) { Ok(estimate) } else { Err(Fault::Estimate) }
     }
 
     /// Keeps a moved state if all of it and its estimate are finite.
@@ -389,11 +397,7 @@ where
         if !moved.is_finite() {
             return Err(Fault::State);
         }
-        let theta = self.model.theta(&moved.estimator.estimate());
-        let estimate = self.model.recover(&moved.extension.coordinates(&theta), &terms);
-        if !all_finite(&estimate) {
-            return Err(Fault::Estimate);
-        }
+        let estimate = self.recovered(&moved.extension, &moved.estimator, &terms)?;
         moved.y = Some(*y);
         self.state = moved;
         self.terms = Some(terms);

@@ -154,8 +154,7 @@ where
         if self.terms.is_none() {
             return self.move_by_drift(drift, None, (terms, y), dt);
         }
-        let sample = Taken { y, u: [u, u], dt, left_out: [false; NR], without: |regression, _| regression };
-        self.step_drifting(Trigger::Drift(drift), terms, &sample)
+        self.step_drifting(Trigger::Drift(drift), terms, &Taken::whole(y, [u, u], dt))
     }
 
     /// Takes the state after a sample, and moves a shift where the form asks for one.
@@ -248,9 +247,7 @@ where
         if !(self.state.regression.is_finite() && self.state.estimator.is_finite()) {
             return Err(Fault::State);
         }
-        let theta = self.model.theta(&self.state.estimator.estimate());
-        let estimate = self.model.recover(&self.state.extension.coordinates(&theta), terms);
-        if all_finite(&estimate) { Ok(estimate) } else { Err(Fault::Estimate) }
+        self.recovered(&self.state.extension, &self.state.estimator, terms)
     }
 
     /// Goes to the end of an interval, before the estimator's step, of an observer that starts its extension again at every
