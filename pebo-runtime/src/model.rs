@@ -104,6 +104,17 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         self.flow(terms, u)
     }
 
+    /// The coordinates expected after `dt` seconds, at which the flow at the end of an interval is asked for: of a
+    /// [`LINEARISED`](Self::LINEARISED) model, from the flow at its start. By default those at the start.
+    fn ahead(
+        &self,
+        _start: &Flow<Self::Scalar, NZ>,
+        z: &SVector<Self::Scalar, NZ>,
+        _dt: Self::Scalar,
+    ) -> SVector<Self::Scalar, NZ> {
+        *z
+    }
+
     /// The slopes of the rates by the outputs whose rates the regression has, at an estimate of `z`, for the [output
     /// form](crate::OutputForm), which has these outputs among its states. By default there are none: measured outputs
     /// alone drive the model.

@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::dense::product;
+use crate::numeric::sum::all_finite;
 use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression, Sides};
 
 /// The output form of a model with a dynamic regression.
@@ -30,8 +31,13 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// ```
 ///
 /// which is the same along every trajectory, where `p_0 = w - p_1 z`, whatever the estimate is, and free of the noise of
-/// `p_0` to first order where it is right. Where the rates are affine in the outputs with such slopes the observer is *the*
-/// continuous-discrete Kalman filter; near the truth it is the extended one, whose slopes these are.
+/// `p_0` to first order where it is right. Where the rates are affine in outputs and `z` combined, with such slopes the
+/// observer is *the* continuous-discrete Kalman filter.
+///
+/// Elsewhere the square of the noise is in these rates, a bias. A form that is [`expecting`](Self::expecting) outputs
+/// takes the rates at the outputs that it expects, `w` itself, as long as these are near the sample: it is then the
+/// extended Kalman filter. What drives it is always within so many standard deviations of the sample, however wrong the
+/// estimate is.
 ///
 /// Sizes: `NW = NR - M::INSTANTS + NZ` unknowns, those of `w` first. The unknown is `(w, z)` at the start less `chi_0`,
 /// which has this length; the first sample is added to the entries of `chi_0` for `w`, whose unknown is then the error
@@ -41,11 +47,19 @@ use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression
 /// Source: the output-error form of the regression, as in Ljung, *System identification*, 1999, chapter 4; re-based,
 /// the Kalman filter in the form of Jazwinski, *Stochastic processes and filtering theory*, 1970, chapter 7.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutputForm<M, const NR: usize, const NZ: usize> {
+pub struct OutputForm<M, S: Real, const NR: usize, const NZ: usize> {
     model: M,
-    /// The index in `y` of each row's output, where estimates are made of expected outputs. Rows without a `w` expect
-    /// none.
-    rows: Option<[usize; NR]>,
+    /// The outputs of the rows, where the model is evaluated at expected outputs.
+    expected: Option<ExpectedOutputs<S, NR>>,
+}
+
+/// The outputs that are expected. Rows without a `w` expect none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ExpectedOutputs<S: Real, const NR: usize> {
+    /// The index in `y` of each row's output.
+    rows: [usize; NR],
+    /// The distance from the sample up to which the expected output drives the rates.
+    reach: SVector<S, NR>,
 }
 
 /// The terms of a sample that the functions of an [`OutputForm`] share.
@@ -55,51 +69,46 @@ pub struct Measured<T, S: Real, const NY: usize> {
     y: SVector<S, NY>,
 }
 
-impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
+impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
+    /// The standard deviations of a sensor within which an expected output is preferred to its sample: beyond, the estimate
+    /// is on its way, or the model is wrong. Where it is right, one sample in 370 is that far off.
+    pub const NEAR: f64 = 3.0;
+
     /// The output form of a model, whose regression must be dynamic.
     pub fn new<const NX: usize, const NY: usize, const NU: usize>(model: M) -> Self
     where
-        M: Rebase<NX, NY, NU, NZ, NR>,
+        M: Rebase<NX, NY, NU, NZ, NR, Scalar = S>,
     {
         const {
             assert!(matches!(M::REGRESSION, Regression::Dynamic), "a static regression has no rate to integrate");
         }
-        Self { model, rows: None }
+        Self { model, expected: None }
     }
 
-    /// The same for a model whose `p_0` are outputs, at these indices in `y`, and whose `p_1` is 0. Its estimates are
-    /// made of the outputs as the observer expects them, `phi_left(z, w)`, and not of samples with their noise: worth
-    /// it where `phi_left` depends on outputs.
+    /// The same for a model whose `p_0` are outputs, at these indices in `y`, with samples of these standard deviations,
+    /// and whose `p_1` is 0. Its rates and estimates are those of the outputs as the observer expects them, and not of
+    /// samples with their noise: worth it where `phi_left` depends on outputs, or the rates on them otherwise than by a
+    /// constant factor. An output that is expected beyond [`NEAR`](Self::NEAR) does not drive the
+    /// rates, nor do expected outputs at which they have no value: the sample does.
     ///
     /// # Errors
-    /// [`Fault::Limits`] if an index is out of `y`.
+    /// [`Fault::Limits`] if an index is out of `y`, [`Fault::Gain`] if a standard deviation is negative or not finite.
     pub fn expecting<const NX: usize, const NY: usize, const NU: usize>(
         model: M,
         rows: [usize; NR],
+        deviations: &SVector<S, NR>,
     ) -> Result<Self, Fault>
     where
-        M: Rebase<NX, NY, NU, NZ, NR>,
+        M: Rebase<NX, NY, NU, NZ, NR, Scalar = S>,
     {
         if rows.iter().any(|&place| place >= NY) {
             return Err(Fault::Limits);
         }
-        Ok(Self { rows: Some(rows), ..Self::new(model) })
-    }
-
-    /// The outputs, those with rows as expected; none where estimates are made of samples.
-    fn expected<S: Real, const NY: usize, const NW: usize>(
-        &self,
-        z: &SVector<S, NW>,
-        y: &SVector<S, NY>,
-        rates: usize,
-    ) -> Option<SVector<S, NY>> {
-        let mut expected = *y;
-        for (row, &place) in self.rows.as_ref()?.iter().enumerate().take(rates) {
-            if let Some(output) = expected.get_mut(place) {
-                *output = z[row];
-            }
+        if !deviations.iter().all(|&deviation| deviation >= S::zero() && Real::is_finite(deviation)) {
+            return Err(Fault::Gain);
         }
-        Some(expected)
+        let reach = deviations * <S as Real>::from_f64(Self::NEAR);
+        Ok(Self { expected: Some(ExpectedOutputs { rows, reach }), ..Self::new(model) })
     }
 
     /// The model within.
@@ -109,7 +118,7 @@ impl<M, const NR: usize, const NZ: usize> OutputForm<M, NR, NZ> {
 }
 
 impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
-    Model<NX, NY, NU, NW, NR, NW> for OutputForm<M, NR, NZ>
+    Model<NX, NY, NU, NW, NR, NW> for OutputForm<M, M::Scalar, NR, NZ>
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
 {
@@ -131,36 +140,47 @@ where
     }
 
     fn flow(&self, terms: &Self::Terms, u: &SVector<M::Scalar, NU>) -> Flow<M::Scalar, NW> {
-        self.flow_near(terms, u, &SVector::zeros())
+        let mut flow = Flow { lambda: SMatrix::zeros(), h: SVector::zeros() };
+        self.linearise(&mut flow, &terms.terms, u, &SVector::zeros());
+        flow
     }
 
     fn flow_near(
         &self,
-        Measured { terms, .. }: &Self::Terms,
+        measured: &Self::Terms,
         u: &SVector<M::Scalar, NU>,
         z: &SVector<M::Scalar, NW>,
     ) -> Flow<M::Scalar, NW> {
         const { assert!(NW + M::INSTANTS == NR + NZ, "the unknowns are those of the outputs with rates and those of z") };
-        let rates = NW - NZ;
-        let inner = self.model.flow(terms, u);
-        // At the extension's start `z = theta`: the regression is then known as a function of z.
-        let start = M::Extension::new(SVector::zeros());
-        let rate = self.model.regression(&start, terms, u);
-        let held = self.model.primitive(&start, terms);
-        let slopes = self.model.output_slopes(terms, u, &SVector::from_fn(|i, _| z[NW - NZ + i]));
-        let known = rate.known - product(&slopes.rates, &held.known);
-        let h = inner.h - product(&slopes.cascade, &held.known);
-        let factor = rate.factor - product(&slopes.rates, &held.factor);
-        let plain = inner.lambda - product(&slopes.cascade, &held.factor);
         let mut flow = Flow { lambda: SMatrix::zeros(), h: SVector::zeros() };
-        fill(&mut flow.h.data.0[0], &known.data.0[0], &h.data.0[0], rates);
-        for (j, column) in flow.lambda.data.0.iter_mut().enumerate() {
-            match j.checked_sub(rates) {
-                None => fill(column, &slopes.rates.data.0[j], &slopes.cascade.data.0[j], rates),
-                Some(j) => fill(column, &factor.data.0[j], &plain.data.0[j], rates),
+        let near = match &self.expected {
+            Some(expected) => self.model.terms(&expected.near(z, &measured.y, NW - NZ)),
+            None => measured.terms,
+        };
+        // One call for both, compiled in place.
+        for terms in [&near, &measured.terms] {
+            self.linearise(&mut flow, terms, u, z);
+            if self.expected.is_none() || (all_finite(&flow.h) && all_finite(&flow.lambda)) {
+                break;
             }
         }
         flow
+    }
+
+    fn ahead(&self, start: &Flow<M::Scalar, NW>, z: &SVector<M::Scalar, NW>, dt: M::Scalar) -> SVector<M::Scalar, NW> {
+        if self.expected.is_none() {
+            return *z;
+        }
+        // Outputs alone: the slopes are those of the estimate.
+        let mut ahead = *z;
+        for row in 0..NW - NZ {
+            let mut rate = start.h[row];
+            for (column, &coordinate) in z.iter().enumerate() {
+                rate += start.lambda[(row, column)] * coordinate;
+            }
+            ahead[row] += rate * dt;
+        }
+        ahead
     }
 
     fn regression(
@@ -210,26 +230,101 @@ where
 
     fn recover(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
         let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
-        match self.expected(z, &measured.y, NW - NZ) {
-            Some(expected) => self.model.recover(&inner, &self.model.terms(&expected)),
+        match &self.expected {
+            Some(expected) => self.model.recover(&inner, &self.model.terms(&expected.of(z, &measured.y, NW - NZ))),
             None => self.model.recover(&inner, &measured.terms),
         }
     }
 
     fn recover_unbounded(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
         let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
-        match self.expected(z, &measured.y, NW - NZ) {
-            Some(expected) => self.model.recover_unbounded(&inner, &self.model.terms(&expected)),
+        match &self.expected {
+            Some(expected) => {
+                self.model.recover_unbounded(&inner, &self.model.terms(&expected.of(z, &measured.y, NW - NZ)))
+            }
             None => self.model.recover_unbounded(&inner, &measured.terms),
         }
     }
 }
 
 impl<M, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NW: usize>
-    Rebase<NX, NY, NU, NW, NR> for OutputForm<M, NR, NZ>
+    Rebase<NX, NY, NU, NW, NR> for OutputForm<M, M::Scalar, NR, NZ>
 where
     M: Rebase<NX, NY, NU, NZ, NR>,
 {
+}
+
+impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
+    /// Makes the flow that of these outputs, linearised at this estimate.
+    #[inline]
+    fn linearise<const NX: usize, const NY: usize, const NU: usize, const NW: usize>(
+        &self,
+        flow: &mut Flow<S, NW>,
+        terms: &M::Terms,
+        u: &SVector<S, NU>,
+        z: &SVector<S, NW>,
+    ) where
+        M: Rebase<NX, NY, NU, NZ, NR, Scalar = S>,
+    {
+        let rates = NW - NZ;
+        let inner = self.model.flow(terms, u);
+        // At the extension's start `z = theta`: the regression is then known as a function of z.
+        let start = M::Extension::new(SVector::zeros());
+        let rate = self.model.regression(&start, terms, u);
+        let held = self.model.primitive(&start, terms);
+        let slopes = self.model.output_slopes(terms, u, &SVector::from_fn(|i, _| z[NW - NZ + i]));
+        let known = rate.known - product(&slopes.rates, &held.known);
+        let h = inner.h - product(&slopes.cascade, &held.known);
+        let factor = rate.factor - product(&slopes.rates, &held.factor);
+        let plain = inner.lambda - product(&slopes.cascade, &held.factor);
+        fill(&mut flow.h.data.0[0], &known.data.0[0], &h.data.0[0], rates);
+        for (j, column) in flow.lambda.data.0.iter_mut().enumerate() {
+            match j.checked_sub(rates) {
+                None => fill(column, &slopes.rates.data.0[j], &slopes.cascade.data.0[j], rates),
+                Some(j) => fill(column, &factor.data.0[j], &plain.data.0[j], rates),
+            }
+        }
+    }
+}
+
+impl<S: Real, const NR: usize> ExpectedOutputs<S, NR> {
+    /// The outputs of a sample, those of the first `rates` rows as expected.
+    fn of<const NY: usize, const NW: usize>(
+        &self,
+        z: &SVector<S, NW>,
+        y: &SVector<S, NY>,
+        rates: usize,
+    ) -> SVector<S, NY> {
+        self.chosen(z, y, rates, |_, _| true)
+    }
+
+    /// The same where they are near those of the sample.
+    fn near<const NY: usize, const NW: usize>(
+        &self,
+        z: &SVector<S, NW>,
+        y: &SVector<S, NY>,
+        rates: usize,
+    ) -> SVector<S, NY> {
+        self.chosen(z, y, rates, |row, distance| Real::abs(distance) <= self.reach[row])
+    }
+
+    fn chosen<const NY: usize, const NW: usize>(
+        &self,
+        z: &SVector<S, NW>,
+        y: &SVector<S, NY>,
+        rates: usize,
+        is_chosen: impl Fn(usize, S) -> bool,
+    ) -> SVector<S, NY> {
+        let mut chosen = *y;
+        for (row, &place) in self.rows.iter().enumerate().take(rates) {
+            if let Some(output) = chosen.get_mut(place)
+                && is_chosen(row, z[row] - *output)
+            {
+                *output = z[row];
+            }
+        }
+        chosen
+    }
 }
 
 /// Makes a column of as many entries of the outputs with rates, and then those of the cascade.

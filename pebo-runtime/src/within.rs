@@ -74,6 +74,10 @@ where
         self.model.flow_near(terms, u, z)
     }
 
+    fn ahead(&self, start: &Flow<S, NZ>, z: &SVector<S, NZ>, dt: S) -> SVector<S, NZ> {
+        self.model.ahead(start, z, dt)
+    }
+
     fn output_slopes(&self, terms: &M::Terms, u: &SVector<S, NU>, z: &SVector<S, NZ>) -> OutputSlopes<S, NR, NZ> {
         self.model.output_slopes(terms, u, z)
     }

@@ -93,13 +93,13 @@ simulation:
 #[test]
 fn what_multiplies_an_unknown_is_filtered_too() {
     let summary = run(ENZYME, 1);
-    // As fast as an extended Kalman filter of the same numbers. With samples in the rates as they are the error takes
-    // eighty times as long to settle, and is ten times as large then.
+    // As fast and as good as an extended Kalman filter of the same numbers: it differs by how each goes from sample to
+    // sample. With samples in the rates as they are the error takes eighty times as long to settle, and is ten times as
+    // large then.
     let settled: Vec<f64> = summary.estimates.iter().map(|rated| rated.score.settled.unwrap()).collect();
-    assert!(settled[0] < 1.5 * settled[1], "{}", summary.text());
+    assert!(settled[0] < 1.1 * settled[1], "{}", summary.text());
     let [own, filter] = [0, 1].map(|place: usize| summary.estimates[place].score.rms);
-    // The noise of what multiplies the unknown still counts as drift, so that the filter is the better one by two.
-    assert!(own < 2.5 * filter, "{}", summary.text());
+    assert!(own < 1.1 * filter, "{}", summary.text());
 }
 
 /// A converter whose parts die out at different rates, with numbers that leave nothing to disturb them.

@@ -22,7 +22,7 @@ fn estimate_with_confidence() -> Result<Option<cuk::X>, Fault> {
     let squares = LeastSquares::diagonal(&SVector::from([0.01, 0.01, 25.0, 400.0]), 0.0)?
         .with_process_noise(&SVector::from([0.9, 4e-3, 0.01, 3.0]))?;
     let mut observer = pebo_runtime::Observer::with_regression(
-        OutputForm::<_, { cuk::NR }, { cuk::NZ }>::new(cuk::Cuk::new(&cuk::Parameters::default())),
+        OutputForm::<_, _, { cuk::NR }, { cuk::NZ }>::new(cuk::Cuk::new(&cuk::Parameters::default())),
         squares,
         SampledRegression::<f64, { cuk::NR }, 4>::new(&SVector::from([0.1, 0.1]))?,
         SVector::zeros(),

@@ -49,6 +49,5 @@ follow! {
     late_outputs: late_cart_f64::LateCart, "models/late_cart.yaml", 20.0, ["p", "s"], ["a"], ["v_hat", "b_hat"];
     noise_in_the_factor: bearing_only_f64::BearingOnly, "../models/bearing_only.yaml", 400.0, ["beta"], ["wx", "wy"],
         ["rx_hat", "ry_hat", "vx_hat", "vy_hat"];
-    slopes_at_the_estimate: induction_motor_f64::InductionMotor, "../models/induction_motor.yaml", 0.05,
-        ["i1", "i2", "omega"], ["v1", "v2"], ["psi1_hat", "psi2_hat", "T_L_hat"];
+    rates_at_expected_outputs: enzyme_f64::Enzyme, "models/enzyme.yaml", 10.0, ["S", "P"], ["v"], ["C_hat"];
 }

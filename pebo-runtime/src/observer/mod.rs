@@ -416,7 +416,8 @@ where
         let start = &self.state.extension;
         let mut end = *start;
         let z = if M::LINEARISED { start.coordinates(&self.theta()) } else { SVector::zeros() };
-        end.advance(&self.flow(before, u_before, &z), &self.flow(after, u_after, &z), dt)?;
+        let [first, last] = self.flows([before, after], [u_before, u_after], &z, dt);
+        end.advance(&first, &last, dt)?;
 
         let mut sides = [model.regression(start, before, u_before), model.regression(&end, after, u_after)];
         if M::REGRESSION == Regression::Dynamic {
@@ -436,10 +437,23 @@ where
         Ok((end, self.state.regression.step(sides.each_ref(), dt)))
     }
 
-    /// The flow at one end of an interval, of a model that linearises it at these coordinates.
+    /// The flow at both ends of an interval, of a model that linearises it from these coordinates at the start.
     #[inline]
-    fn flow(&self, terms: &M::Terms, u: &SVector<M::Scalar, NU>, z: &SVector<M::Scalar, NZ>) -> Flow<M::Scalar, NZ> {
-        if M::LINEARISED { self.model.flow_near(terms, u, z) } else { self.model.flow(terms, u) }
+    fn flows(
+        &self,
+        [before, after]: [&M::Terms; 2],
+        [u_before, u_after]: [&SVector<M::Scalar, NU>; 2],
+        z: &SVector<M::Scalar, NZ>,
+        dt: M::Scalar,
+    ) -> [Flow<M::Scalar, NZ>; 2] {
+        let model = &self.model;
+        if M::LINEARISED {
+            let first = model.flow_near(before, u_before, z);
+            let last = model.flow_near(after, u_after, &model.ahead(&first, z, dt));
+            [first, last]
+        } else {
+            [model.flow(before, u_before), model.flow(after, u_after)]
+        }
     }
 
     /// Extension and regression at the end of a sample's interval, of an observer that has one before.

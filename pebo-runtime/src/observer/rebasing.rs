@@ -260,8 +260,7 @@ where
         let before = self.terms.as_ref().ok_or(Fault::State)?;
         let estimate = self.state.estimator.estimate();
         let z = self.state.extension.coordinates(&estimate);
-        let start = self.flow(before, u_before, &z);
-        let end = self.flow(terms, u_after, &z);
+        let [start, end] = self.flows([before, terms], [u_before, u_after], &z, dt);
         let State { extension, regression, estimator, .. } = &mut self.state;
         extension.rebase(&-estimate);
         estimator.shift(&-estimate);

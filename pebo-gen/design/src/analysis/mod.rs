@@ -51,6 +51,6 @@ pub use design::{
     UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;
-pub use output_slopes::OutputSlopes;
+pub use output_slopes::{OutputSlopes, are_affine_in_outputs};
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

@@ -51,15 +51,22 @@ impl OutputSlopes {
         let is_some = found.rates.iter().chain(&found.cascade).flatten().any(|slope| !arena.is_zero(*slope));
         is_some.then_some(found)
     }
+}
 
-    /// Those of the terms without unknowns.
-    #[must_use]
-    pub fn of_known_terms(&self, plant: &Plant) -> Self {
-        let arena = &plant.arena;
-        let start: BTreeMap<Symbol, Expr> = plant.z.iter().map(|z| (*z, arena.zero())).collect();
-        let at = |rows: &[Vec<Expr>]| rows.iter().map(|row| arena.substitute_all(row, &start)).collect();
-        Self { outputs: self.outputs.clone(), rates: at(&self.rates), cascade: at(&self.cascade) }
-    }
+/// True if each output whose rate the regression has is in all rates with a factor that depends neither on such outputs nor
+/// on z: rates that are linearised in these outputs are then the same at all their values.
+pub fn are_affine_in_outputs(plant: &Plant, cascade: &Cascade, regression: &Regression) -> bool {
+    let arena = &plant.arena;
+    let Some(outputs) = regression.outputs_with_rates(plant) else { return false };
+    let outputs: Vec<Symbol> = outputs.into_iter().map(|output| plant.y[output].symbol).collect();
+    let (known, factor) = at_start(plant, regression);
+    let mut terms: Vec<Expr> = [known.as_slice(), &cascade.h].concat();
+    let factors: Vec<Expr> = factor.iter().chain(cascade.lambda.iter().flatten()).flatten().copied().collect();
+    let of = outputs.iter().copied().collect();
+    // Where an output is in a factor of z, z is in the output's.
+    let by = |output: &Symbol| terms.iter().map(|term| arena.derivative(*term, *output)).collect::<Vec<_>>();
+    terms = outputs.iter().flat_map(by).chain(factors).collect();
+    !terms.iter().any(|term| arena.depends_on(*term, &of))
 }
 
 /// The sides of a regression at the start of its extension, where the unknown is z.
@@ -93,11 +100,16 @@ mod tests {
     use crate::model::Model;
     use crate::source::Source;
 
-    /// The slopes of the rates of `y` and `z1` by `y`, as printed.
-    fn of(lines: &str) -> Option<[String; 2]> {
+    fn derived(lines: &str) -> (Plant, Derivation) {
         let text = format!("model: m\nx: [a]\ny: [y]\nu: [u]\nparameters: {{k: 2}}\n{lines}\n");
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
         let derivation = Derivation::derive(&plant);
+        (plant, derivation)
+    }
+
+    /// The slopes of the rates of `y` and `z1` by `y`, as printed.
+    fn of(lines: &str) -> Option<[String; 2]> {
+        let (plant, derivation) = derived(lines);
         let regression = derivation.regression.result.as_ref().unwrap();
         let found = OutputSlopes::of(&plant, derivation.cascade.result.as_ref().unwrap(), regression)?;
         Some([found.rates[0][0], found.cascade[0][0]].map(|slope| plant.arena.print(slope)))
@@ -112,6 +124,19 @@ mod tests {
         // So has what multiplies an unknown, at an estimate.
         assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + y^2)*a}\nphi: [a]").unwrap(), ["2*y*z1", "0"]);
         assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + u^2)*a}\nphi: [a]"), None);
+    }
+
+    #[test]
+    fn rates_may_be_affine_in_outputs_and_unknowns_combined() {
+        let affine = |f_x: &str, f_y: &str| {
+            let (plant, derivation) = derived(&format!("f_x: {{a: '{f_x}'}}\nf_y: {{y: '{f_y}'}}\nphi: [a]"));
+            let cascade = derivation.cascade.result.as_ref().unwrap();
+            are_affine_in_outputs(&plant, cascade, derivation.regression.result.as_ref().unwrap())
+        };
+        assert!(affine("u - k*y", "a - u*y + cos(u)"));
+        for (f_x, f_y) in [("sin(y)", "a"), ("u", "a*y"), ("-y*a", "a"), ("u", "a + y^2"), ("abs(y)", "a")] {
+            assert!(!affine(f_x, f_y), "{f_x}, {f_y}");
+        }
     }
 
     #[test]

@@ -6,11 +6,14 @@ use std::marker::PhantomData;
 use std::rc::Rc;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
-use pebo_runtime::{Extension, Flow, Functions, Fundamental, Integrator, Model, OutputSlopes, Regression, Sides};
+use pebo_runtime::{
+    Extension, Flow, Functions, Fundamental, Integrator, Model, OutputForm, OutputSlopes, Regression, Sides,
+};
 
 use pebo_design::program::{Interpreter, Program};
 
 use super::design::Design;
+use super::setup::{Operator, Settings};
 use super::sizes::pad;
 
 /// The kind of a regression, as a type.
@@ -97,8 +100,9 @@ pub(super) struct Derived<X, K, const N: usize> {
     /// In the output form: the rows of the regression with a rate, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
     output: Option<(usize, X)>,
-    /// In the output form: the indices of the outputs whose expected values estimates are made of.
-    expected: Option<Vec<usize>>,
+    /// In the output form: the indices of the outputs at whose expected values the model is evaluated, with the distance
+    /// from the sample up to which they drive the rates.
+    expected: Option<Vec<(usize, f64)>>,
     kind: PhantomData<(X, K)>,
 }
 
@@ -106,7 +110,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
     pub(super) fn new(design: &Design) -> Self {
         let nz = design.coordinates;
         Self {
-            expected: design.settings.expected.clone(),
+            expected: expected(&design.settings),
             output: design.settings.output.then(|| (design.rates(), X::new(SVector::zeros()))),
             known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
@@ -135,6 +139,32 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         Flow { lambda: rows(&mut values, self.nz), h }
     }
 
+    /// The flow, linearised at these outputs and at this estimate.
+    fn flow_at(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> Flow<f64, N> {
+        let inner = self.cascade(y, u);
+        let Some((rows, _)) = self.output else { return inner };
+        // As the runtime's `OutputForm`, whose sizes are constants.
+        let start = X::new(SVector::zeros());
+        let (rate, held) = (self.sides(&start, y, u), self.primitive(&start, y));
+        let mut inner_z = SVector::zeros();
+        (0..self.nz).for_each(|i| inner_z[i] = z[rows + i]);
+        let slopes = self.output_slopes(y, u, &inner_z);
+        let [known, rest] = [(rate.known, slopes.rates), (inner.h, slopes.cascade)].map(|(h, s)| h - s * held.known);
+        let [factor, plain] =
+            [(rate.factor, slopes.rates), (inner.lambda, slopes.cascade)].map(|(factor, s)| factor - s * held.factor);
+        let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
+        for i in 0..rows + self.nz {
+            h[i] = if i < rows { known[i] } else { rest[i - rows] };
+            for j in 0..rows {
+                lambda[(i, j)] = if i < rows { slopes.rates[(i, j)] } else { slopes.cascade[(i - rows, j)] };
+            }
+            for j in 0..self.nz {
+                lambda[(i, rows + j)] = if i < rows { factor[(i, j)] } else { plain[(i - rows, j)] };
+            }
+        }
+        Flow { lambda, h }
+    }
+
     /// The sides of the model's own regression; in the output form, functions of z.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         self.both(&mut self.regression.borrow_mut(), extension, y, u)
@@ -157,6 +187,13 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         let known = column(&mut values, self.nr);
         Sides { known, factor: rows(&mut values, self.ne) }
     }
+}
+
+/// The expected outputs of settings, as the runtime's `OutputForm` has them.
+fn expected(settings: &Settings) -> Option<Vec<(usize, f64)>> {
+    let Operator::Sampled(deviations) = &settings.operator else { return None };
+    let reach = deviations.iter().map(|deviation| OutputForm::<(), f64, 0, 0>::NEAR * deviation);
+    Some(settings.expected.as_ref()?.iter().copied().zip(reach).collect())
 }
 
 fn interpreter(program: &Program) -> Rc<RefCell<Interpreter>> {
@@ -206,32 +243,26 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     const LINEARISED: bool = true;
 
     fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
-        self.flow_near(y, u, &SVector::zeros())
+        self.flow_at(y, u, &SVector::zeros())
     }
 
     fn flow_near(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> Flow<f64, N> {
-        let inner = self.cascade(y, u);
-        let Some((rows, _)) = self.output else { return inner };
-        // As the runtime's `OutputForm`, whose sizes are constants.
-        let start = X::new(SVector::zeros());
-        let (rate, held) = (self.sides(&start, y, u), self.primitive(&start, y));
-        let mut inner_z = SVector::zeros();
-        (0..self.nz).for_each(|i| inner_z[i] = z[rows + i]);
-        let slopes = self.output_slopes(y, u, &inner_z);
-        let [known, rest] = [(rate.known, slopes.rates), (inner.h, slopes.cascade)].map(|(h, s)| h - s * held.known);
-        let [factor, plain] =
-            [(rate.factor, slopes.rates), (inner.lambda, slopes.cascade)].map(|(factor, s)| factor - s * held.factor);
-        let (mut lambda, mut h) = (SMatrix::zeros(), SVector::zeros());
-        for i in 0..rows + self.nz {
-            h[i] = if i < rows { known[i] } else { rest[i - rows] };
-            for j in 0..rows {
-                lambda[(i, j)] = if i < rows { slopes.rates[(i, j)] } else { slopes.cascade[(i - rows, j)] };
-            }
-            for j in 0..self.nz {
-                lambda[(i, rows + j)] = if i < rows { factor[(i, j)] } else { plain[(i - rows, j)] };
+        let (Some(expected), Some((rates, _))) = (&self.expected, &self.output) else { return self.flow_at(y, u, z) };
+        let mut near = *y;
+        for (row, (place, reach)) in expected.iter().enumerate().take(*rates) {
+            if (z[row] - y[*place]).abs() <= *reach {
+                near[*place] = z[row];
             }
         }
-        Flow { lambda, h }
+        let flow = self.flow_at(&near, u, z);
+        let is_finite = flow.h.iter().chain(flow.lambda.iter()).all(|entry| entry.is_finite());
+        if is_finite { flow } else { self.flow_at(y, u, z) }
+    }
+
+    fn ahead(&self, start: &Flow<f64, N>, z: &SVector<f64, N>, dt: f64) -> SVector<f64, N> {
+        let (Some(_), Some((rates, _))) = (&self.expected, &self.output) else { return *z };
+        let rate = start.lambda * z + start.h;
+        SVector::from_fn(|row, _| if row < *rates { z[row] + rate[row] * dt } else { z[row] })
     }
 
     fn output_slopes(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> OutputSlopes<f64, N, N> {
@@ -312,7 +343,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         let mut y = *y;
         let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
-        for (row, place) in self.expected.iter().flatten().take(first).enumerate() {
+        for (row, (place, _)) in self.expected.iter().flatten().take(first).enumerate() {
             y[*place] = z[row];
         }
         let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };

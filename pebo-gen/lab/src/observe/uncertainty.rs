@@ -274,15 +274,16 @@ impl<const N: usize> Uncertainty<N> {
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
         let Interval { before, after, u, dt, z } = interval;
-        let flows = [model.flow_near(before, u, z), model.flow_near(after, u, z)];
+        let first = model.flow_near(before, u, z);
+        let ahead = model.ahead(&first, z, *dt);
+        let flows = [first, model.flow_near(after, u, &ahead)];
         let mut extension = Fundamental::<f64, N>::new(*z);
         let [first, last] = &flows;
         extension.advance(first, last, *dt)?;
         let of_errors = *extension.psi();
-        let estimate = z;
         let z = extension.xi();
         let rate = |y: &SVector<f64, N>| {
-            let Flow { lambda, h } = model.flow_near(y, u, estimate);
+            let Flow { lambda, h } = model.flow_near(y, u, &ahead);
             lambda * z + h
         };
         let one = SMatrix::<f64, N, N>::identity();

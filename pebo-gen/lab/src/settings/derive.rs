@@ -9,7 +9,7 @@
 //! unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, OutputSlopes, Regression, RegressionKind};
+use pebo_design::analysis::{Derivation, OutputSlopes, Regression, RegressionKind, are_affine_in_outputs};
 use pebo_design::model::{Decimal, Form, Model};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::{Covariance, Estimator, Frame, Operator, Rebase, Settings};
@@ -225,14 +225,16 @@ fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut D
     Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
 }
 
-/// The indices of the outputs whose rates are used, if they alone are under the derivative and states are recovered
-/// from outputs: then from the expected ones.
+/// The indices of the outputs whose rates are used, if they alone are under the derivative and something depends on their
+/// values: states that are recovered, or rates linearised at them. Then the expected outputs serve.
 fn expected(plant: &Plant, derivation: &Derivation) -> Option<Vec<usize>> {
     let regression = derivation.regression.result.as_ref()?;
     let inverse = derivation.left_inverse.result.as_ref()?;
+    let cascade = derivation.cascade.result.as_ref()?;
     let y = plant.y.iter().map(|output| output.symbol).collect();
-    let depends = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
-    let mut rows = regression.outputs_with_rates(plant).filter(|_| depends)?;
+    let are_recovered = inverse.x.iter().any(|(_, formula)| plant.arena.depends_on(*formula, &y));
+    let depends = || are_recovered || !are_affine_in_outputs(plant, cascade, regression);
+    let mut rows = regression.outputs_with_rates(plant).filter(|_| depends())?;
     // A row of an instant expects no output of its own; its entry is that of the first in its equation.
     let instants = regression.sources.iter().skip(rows.len());
     rows.extend(instants.map(|outputs| outputs.first().copied().unwrap_or(0)));
@@ -402,12 +404,10 @@ impl Formulas {
             slopes.collect::<Vec<_>>()
         };
         let [mut flow, mut driven] = [&flow, &rates].map(|formulas| Slopes::new(plant, formulas, &y));
-        // Outputs that are states of the observer drive it as such, not by their samples. What multiplies an unknown is
-        // rid of noise only as far as the unknown is known: its noise still counts as drift, and stands for what is lost
-        // between samples too.
+        // Outputs that are states of the observer drive it as such, not by their samples. The noise of what has no slope
+        // still counts as drift.
         if let Some(slopes) = OutputSlopes::of(plant, cascade, &regression).filter(|_| is_output) {
             let states: Vec<Symbol> = slopes.outputs.iter().map(|output| y[*output]).collect();
-            let slopes = slopes.of_known_terms(plant);
             flow = flow.without(plant, &slopes.cascade, &states);
             driven = driven.without(plant, &slopes.rates, &states);
         }

@@ -121,14 +121,28 @@ fn a_guessed_drift_is_corrected_by_the_samples() {
 }
 
 #[test]
-fn the_noise_of_an_output_that_multiplies_an_unknown_is_process_noise() {
-    // q' = 3*y*z1 by a sample of y, k' = 0; y' = -y + u is known.
-    let text = "model: m\nx: [k]\ny: [q, y]\nu: [u]\nf_x: {k: 0}\nf_y: {q: 3*y*k - 5*q, y: u - y}\nphi: [k]\n\
-                observer: {sensors: {q: 0.2, y: 0.1}, start: {k: 1}, disturbance: {k: 0}}\n\
-                simulation: {step: 0.01, initial: {k: 2, q: 0, y: 4}, control: {u: 4}}\n";
-    let (settings, problems) = derived(text);
-    let [_, noise, _] = numbers(&settings.unwrap_or_else(|| panic!("{problems:?}")));
+fn the_noise_of_an_output_without_a_slope_is_process_noise() {
+    // q' by y, k' = 0; y' = -y + u is known.
+    let of = |rate: &str| {
+        let text = format!(
+            "model: m\nx: [k]\ny: [q, y]\nu: [u]\nf_x: {{k: 0}}\nf_y: {{q: {rate} - 5*q, y: u - y}}\nphi: [k]\n\
+             observer: {{sensors: {{q: 0.2, y: 0.1}}, start: {{k: 1}}, disturbance: {{k: 0}}}}\n\
+             simulation: {{step: 0.01, initial: {{k: 2, q: 0, y: 4}}, control: {{u: 4}}}}\n"
+        );
+        let (settings, problems) = derived(&text);
+        let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+        let [_, noise, _] = numbers(&settings);
+        (noise, settings.expected)
+    };
+    let (noise, expected) = of("3*abs(y)*k");
     assert!(close(&noise, &[(3.0_f64 * 2.0 * 0.1).powi(2) * 0.01, 0.0, 0.0]), "{noise:?}");
+    assert_eq!(expected, Some(vec![0, 1]));
+    // With a slope the output is a state of the observer, at whose estimate the rates are taken.
+    let (noise, expected) = of("3*y*k");
+    assert!(close(&noise, &[0.0; 3]) && expected == Some(vec![0, 1]), "{noise:?} {expected:?}");
+    // Where the factor is constant they do not depend on it.
+    let (noise, expected) = of("k + 3*y");
+    assert!(close(&noise, &[0.0; 3]) && expected.is_none(), "{noise:?} {expected:?}");
 }
 
 #[test]

@@ -135,7 +135,7 @@ impl Module<'_> {
         let estimator = if bounded { quote!(Bounded<#scalar, #estimator, #unknowns>) } else { estimator };
         let summary = doc(&format!("The observer with the settings of the model. {}", self.words(settings)));
         let type_name = ident(&camel(&self.plant.name));
-        let model = if settings.output { quote!(OutputForm<#type_name, NR, NZ>) } else { quote!(#type_name) };
+        let model = if settings.output { quote!(OutputForm<#type_name, #scalar, NR, NZ>) } else { quote!(#type_name) };
         let model = if is_within(settings) { quote!(Within<#model, #scalar, NX>) } else { model };
         let rows = settings.expected.as_ref().map(|places| {
             let places = places.iter().map(|place| proc_macro2::Literal::usize_unsuffixed(*place));
@@ -214,9 +214,10 @@ impl Module<'_> {
                 (window, quote!(Tuned::with_regression(model, estimator, window, chi_0)))
             }
             Operator::Sampled(deviations) => {
-                let deviations = deviations.iter().map(&mut one);
+                // The output form that expects outputs has them already.
+                let list = settings.expected.is_none().then(|| list_of_deviations(deviations, &mut one));
                 let sampled = quote! {
-                    let deviations = SVector::from([#(#deviations),*]);
+                    #list
                     let sampled = SampledRegression::new(&deviations)?;
                 };
                 let observer = if settings.late.is_some() { quote!(pebo_runtime::Observer) } else { quote!(Tuned) };
@@ -414,12 +415,12 @@ impl Module<'_> {
                 }
             },
         };
-        let output = settings.output.then(|| {
-            if settings.expected.is_some() {
-                quote!(let model = OutputForm::expecting(model, ROWS)?;)
-            } else {
-                quote!(let model = OutputForm::new(model);)
+        let output = settings.output.then(|| match (&settings.expected, &settings.operator) {
+            (Some(_), Operator::Sampled(deviations)) => {
+                let list = list_of_deviations(deviations, &mut one);
+                quote!(#list let model = OutputForm::expecting(model, ROWS, &deviations)?;)
             }
+            _ => quote!(let model = OutputForm::new(model);),
         });
         quote!(#output #within #lists #estimator #bounded)
     }
@@ -507,6 +508,12 @@ impl Module<'_> {
         }
         format!("Settings: {}.", parts.join("; "))
     }
+}
+
+/// The statement with the standard deviations of the rows of samples.
+fn list_of_deviations(deviations: &[Rational], one: &mut impl FnMut(&Rational) -> TokenStream) -> TokenStream {
+    let deviations = deviations.iter().map(one);
+    quote!(let deviations = SVector::from([#(#deviations),*]);)
 }
 
 /// The observer whose outputs arrive late, from one on time.

@@ -36,8 +36,9 @@ pub(in crate::emit) const ROWS: &str = "ROWS";
 enum Form {
     /// That of its regression.
     Own,
-    /// Its outputs, and estimates are made of the expected ones at these indices, if there are any.
-    Outputs(Option<Vec<usize>>),
+    /// Its outputs, and the model is evaluated at the expected ones at these indices, if there are any, whose samples have
+    /// these standard deviations.
+    Outputs(Option<(Vec<usize>, Vec<Rational>)>),
 }
 
 /// The value of a name.
@@ -292,9 +293,10 @@ impl Reader<'_> {
             ("OutputForm::new", [Some(Model(Form::Own, [None, None])), None, None, None]) => {
                 Model(Form::Outputs(None), [None, None])
             }
-            ("OutputForm::expecting", [Some(Model(Form::Own, [None, None])), Some(Made::Rows(rows)), None, None]) => {
-                Model(Form::Outputs(Some(rows)), [None, None])
-            }
+            (
+                "OutputForm::expecting",
+                [Some(Model(Form::Own, [None, None])), Some(Made::Rows(rows)), Some(List(deviations)), None],
+            ) => Model(Form::Outputs(Some((rows, deviations))), [None, None]),
             ("Within::new", [Some(Model(form, [None, None])), Some(lower), Some(upper), None]) => {
                 Model(form, [bound(lower, false).ok()?, bound(upper, true).ok()?])
             }
@@ -324,7 +326,11 @@ impl Reader<'_> {
                 }
                 let (output, expected) = match form {
                     Form::Own => (false, None),
-                    Form::Outputs(expected) => (true, expected),
+                    Form::Outputs(None) => (true, None),
+                    Form::Outputs(Some((rows, deviations))) => {
+                        let is_weight = matches!(&operator, Operator::Sampled(weights) if *weights == deviations);
+                        (true, Some(is_weight.then_some(rows)?))
+                    }
                 };
                 Made::Observer(Box::new(Settings {
                     operator,

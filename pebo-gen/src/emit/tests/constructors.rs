@@ -167,7 +167,13 @@ fn the_output_form_may_expect_its_outputs() {
     let given = Settings { expected: Some(vec![0, 1]), ..output_form() };
     let text = tuned(&given);
     assert!(text.contains("pub const ROWS: [usize; NR] = [0, 1];"), "{text}");
-    assert!(text.contains("let model = OutputForm::expecting(model, ROWS)?;"), "{text}");
+    let expected = [
+        "let deviations = SVector::from([0.1, 0.1]);",
+        "let model = OutputForm::expecting(model, ROWS, &deviations)?;",
+    ];
+    assert_eq!(statements(&text)[1..3], expected);
+    assert_eq!(text.matches("let deviations").count(), 1, "{text}");
+    refuse_changed(&given, &[("SVector::from([0.1, 0.1])", "SVector::from([0.1, 0.2])")]);
 }
 
 #[test]

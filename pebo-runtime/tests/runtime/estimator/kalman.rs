@@ -201,7 +201,7 @@ where
     let (prior, process) = (Vector3::new(2.0, 4.0, 4.0), Vector3::new(0.0, 0.1, 0.3));
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&process)?;
     let sampled = SampledRegression::new(&Vector1::new(sigma))?;
-    let model = OutputForm::<_, 1, 2>::new(model);
+    let model = OutputForm::<_, _, 1, 2>::new(model);
     let mut observer = Observer::with_regression(model, squares, sampled, Vector3::zeros())?.rebasing(1)?;
     let mut kalman = Kalman {
         // The first sample is where the observer begins.
@@ -279,7 +279,7 @@ fn a_value_beside_a_rate_is_a_measurement_of_its_own() -> Result<(), Fault> {
     let (dt, sigma) = (1e-2, Vector2::new(1.0, 1e-4));
     let (prior, process) = (Vector3::new(1.0, 4.0, 4.0), Vector3::new(0.0, 0.01, 0.1));
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&process)?;
-    let model = OutputForm::<_, 2, 2>::new(RateAndValue);
+    let model = OutputForm::<_, _, 2, 2>::new(RateAndValue);
     let mut observer =
         Observer::with_regression(model, squares, SampledRegression::new(&sigma)?, Vector3::zeros())?.rebasing(1)?;
     let mut kalman = Kalman {
@@ -319,7 +319,7 @@ fn a_value_beside_a_rate_is_a_measurement_of_its_own() -> Result<(), Fault> {
 
 /// The output form of the Cuk converter, case I, before its first sample.
 type Parted =
-    Observer<OutputForm<CaseOne<f64>, 2, 2>, LeastSquares<f64, 4>, 2, 2, 1, 4, 2, 4, SampledRegression<f64, 2, 4>>;
+    Observer<OutputForm<CaseOne<f64>, f64, 2, 2>, LeastSquares<f64, 4>, 2, 2, 1, 4, 2, 4, SampledRegression<f64, 2, 4>>;
 
 fn parted() -> Result<Parted, Fault> {
     let squares = LeastSquares::diagonal(&Vector4::new(0.01, 0.01, 4.0, 4.0), 0.0)?;
@@ -400,7 +400,7 @@ fn output_form_of_cuk(process: f64, offset: f64) -> Result<f64, Fault> {
     let wander = process * process;
     let squares = LeastSquares::diagonal(&prior, 0.0)?.with_process_noise(&Vector4::new(0.0, 0.0, wander, wander))?;
     let sampled = SampledRegression::new(&Vector2::repeat(sigma))?;
-    let model = OutputForm::<_, 2, 2>::new(CaseOne::<f64>::new());
+    let model = OutputForm::<_, _, 2, 2>::new(CaseOne::<f64>::new());
     let mut observer =
         Observer::<_, _, 2, 2, 1, 4, 2, 4, _>::with_regression(model, squares, sampled, Vector4::zeros())?
             .rebasing(1)?;

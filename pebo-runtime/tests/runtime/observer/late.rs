@@ -84,7 +84,7 @@ const START: [f64; 4] = [0.3, 0.05, 2.0, 1.0];
 const DRIFT: [f64; 4] = [0.0, 0.0, 0.04, 0.01];
 
 type Delayed<S, const N: usize> =
-    LateObserver<OutputForm<Spring<S>, 2, 2>, LeastSquares<S, 4>, 2, 2, 1, 4, 2, 4, SampledRegression<S, 2, 4>, N>;
+    LateObserver<OutputForm<Spring<S>, S, 2, 2>, LeastSquares<S, 4>, 2, 2, 1, 4, 2, 4, SampledRegression<S, 2, 4>, N>;
 
 /// An observer whose first output is late by so many seconds, of an angle with this period.
 fn observer<S: Real, const N: usize>(delay: f64, period: f64) -> Delayed<S, N> {

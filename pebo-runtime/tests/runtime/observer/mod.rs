@@ -3,6 +3,7 @@
 mod angle;
 mod drift;
 mod errors_in_variables;
+mod expected;
 mod functions;
 mod kinds;
 mod late;

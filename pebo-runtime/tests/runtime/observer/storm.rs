@@ -131,7 +131,7 @@ fn all_weathers<S: Real>() -> Result<u32, Fault> {
         weather::<S, _, _>(FiniteTime::tracking(drem, real(0.1), real(1e-3))?, filtered, 10),
         weather::<S, _, _>(Bounded::new(squares, &pair(-50.0, -50.0), &pair(50.0, 50.0))?, filtered, 11),
         of_model::<S, _, _, _, 4>(
-            &OutputForm::<_, 2, 2>::new(CaseTwo::<S>::new()),
+            &OutputForm::<_, _, 2, 2>::new(CaseTwo::<S>::new()),
             LeastSquares::diagonal(&four(1e3), real(0.0))?.with_process_noise(&four(1.0))?,
             SampledRegression::new(&pair(0.1, 0.1))?,
             Some(1),
