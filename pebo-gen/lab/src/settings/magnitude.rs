@@ -3,7 +3,7 @@
 //! These numbers estimate nothing: they make an observer that converges on an exact model, in any units, and follows
 //! changes of it within some hundred samples.
 
-use pebo_cas::Symbol;
+use pebo_cas::{Expr, Symbol};
 use pebo_design::model::{Decimal, Entry, Model, Spanned};
 use pebo_design::plant::{Plant, State};
 
@@ -67,6 +67,11 @@ impl Deviations {
             let rounding = of(&simulation.quantisation, symbol).unwrap_or_default() / 12.0_f64.sqrt();
             Some(noise.hypot(rounding)).filter(|deviation| *deviation > 0.0)
         };
+        // A plant that starts at rest has its rates later.
+        let along: Vec<Point> = match shown.course.as_slice() {
+            [] => vec![point.clone()],
+            course => course.iter().map(|row| point.with(&shown.signals, row)).collect(),
+        };
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let sensor = |symbol: &Symbol| {
@@ -79,8 +84,7 @@ impl Deviations {
             Some(deviation) => Some(deviation),
             None if silent => {
                 let (size, root) = (magnitude(state.symbol), (SAMPLES * period?).sqrt());
-                let summands = plant.terms.get(&state.symbol).into_iter().flatten();
-                let rate: f64 = summands.filter_map(|summand| point.value(summand.expr)).map(f64::abs).sum();
+                let rate = rate(plant, state, &along);
                 if arena.is_zero(state.rate.expr) {
                     return Some(size / root);
                 }
@@ -97,4 +101,16 @@ impl Deviations {
             are_assumed: silent,
         })
     }
+}
+
+/// The sum of the mean absolute values of a rate's summands, at these points.
+fn rate(plant: &Plant, state: &State, points: &[Point]) -> f64 {
+    let summands: Vec<Expr> = plant.terms.get(&state.symbol).into_iter().flatten().map(|term| term.expr).collect();
+    let values: Vec<Vec<f64>> = points.iter().filter_map(|point| point.values(&summands)).collect();
+    let mean = |place: usize| {
+        let known: Vec<f64> =
+            values.iter().map(|values| values[place].abs()).filter(|value| value.is_finite()).collect();
+        known.iter().sum::<f64>() / known.iter().map(|_| 1.0).sum::<f64>()
+    };
+    (0..summands.len()).map(mean).filter(|mean| mean.is_finite()).sum()
 }

@@ -16,6 +16,9 @@ pub struct Shown {
     pub(super) is_recorded: bool,
     /// The first values of signals.
     pub(super) first: BTreeMap<Symbol, f64>,
+    /// Some samples in which no signal is missing, in the order of `signals`.
+    pub(super) course: Vec<Vec<f64>>,
+    pub(super) signals: Vec<Symbol>,
     /// The standard deviations of sensors.
     pub(super) deviations: BTreeMap<Symbol, f64>,
 }
@@ -53,15 +56,22 @@ impl Shown {
         let first = samples
             .iter()
             .filter_map(|(signal, values)| Some((*signal, values.iter().copied().find(|value| value.is_finite())?)));
+        let whole = (0..times.len()).step_by(EVERY).map(|k| samples.iter().map(|(_, values)| values[k]).collect());
         let measured = samples.iter().filter(|(signal, _)| sensors.contains(signal));
         Self {
             period: period.or_else(|| median(intervals.collect())),
             is_recorded: true,
             first: first.collect(),
+            course: whole.filter(|row: &Vec<f64>| row.iter().all(|value| value.is_finite())).collect(),
+            signals: samples.iter().map(|(signal, _)| *signal).collect(),
             deviations: measured.filter_map(|(signal, values)| Some((*signal, scatter(values)?))).collect(),
         }
     }
 }
+
+/// Of so many rows one shows how large the rates of the plant are.
+#[cfg(feature = "simulate")]
+const EVERY: usize = 8;
 
 /// Differences of a noise of standard deviation 1, of orders two to four, have these standard deviations: the roots of the
 /// sums of their squared coefficients.

@@ -8,7 +8,7 @@
 
 use pebo_design::source::{Code, Diagnostic, Span, listed};
 
-use super::{EstimateScore, Summary, short};
+use super::{CREDIBLE, EstimateScore, Summary, short};
 use crate::observe::excitation::Excitation;
 use crate::observe::setup::Estimator;
 use crate::score::{SETTLED, Score};
@@ -223,10 +223,18 @@ fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, di
                 .note(format!("{note}, and the observer expects {} of its sensors and disturbances", short(expected)))
                 .help(help)
         }
-        (None, _) => diagnostic
-            .note(note + &departed)
-            .note("the innovations are as expected: the outputs do not show this error")
-            .help(mended),
+        (None, _) => {
+            let shown = match summary.surprise.filter(|square| square > CREDIBLE.end()) {
+                // What is typical of them does not contradict the numbers.
+                Some(square) => format!(
+                    "most innovations are as expected, but some so large that their normalised square is {} on average: the \
+                     plant does more than its model says, or samples are off by far",
+                    short(square)
+                ),
+                None => "the innovations are as expected: the outputs do not show this error".to_owned(),
+            };
+            diagnostic.note(note + &departed).note(shown).help(mended)
+        }
     }
 }
 

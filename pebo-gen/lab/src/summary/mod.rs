@@ -96,7 +96,7 @@ impl Estimate {
 
 /// Beyond these, the normalised square of the innovation contradicts the numbers of an observer: what a factor of two in
 /// a standard deviation comes to, with some room.
-const CREDIBLE: std::ops::RangeInclusive<f64> = 0.2..=5.0;
+pub(crate) const CREDIBLE: std::ops::RangeInclusive<f64> = 0.2..=5.0;
 
 /// The mean square of so many innovations is below or above these by chance in one of ten thousand runs at most.
 const ENOUGH: [u64; 2] = [20, 10];

@@ -68,10 +68,6 @@ const RUNS: [(&str, &str, (f64, f64)); 5] = [
     ("shaken", SHAKEN, (10.0, 0.01)),
 ];
 
-/// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two
-/// instants that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the
-/// simulation has the step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten
-/// times that.
 #[test]
 fn a_recording_on_which_nothing_settles_says_why() {
     let advice = |model: &str, recording: &str| {
@@ -94,6 +90,10 @@ fn a_recording_on_which_nothing_settles_says_why() {
     assert_eq!(advice(CART, &rows(1.0).replace(",p\n", "\n").replace(",0,1\n", ",0\n")), None);
 }
 
+/// The table holds every sample to the last bit. What differs is the time between two rows: the difference of two
+/// instants that are rounded to 2^-53 of themselves, and so off by some t/dt times that of the step, where the
+/// simulation has the step itself. Over 10^4 steps that is 10^-12 of each step; what the observer makes of it, ten
+/// times that.
 #[test]
 fn the_estimates_are_those_of_the_simulation_to_the_rounding_of_its_times() -> Result<(), Failure> {
     for (name, model, run) in RUNS {
@@ -179,5 +179,50 @@ fn the_first_rows_say_what_no_one_wrote() -> Result<(), Failure> {
     let told = format!("{GROWTH}observer: {{sensors: {{q: 0.02}}, start: {{a: 1}}}}\n");
     let (replayed, _) = replay(&told, &trace.csv())?;
     assert!(replayed.text().contains("  sensors: q 0.0200\n"), "{}", replayed.text());
+    Ok(())
+}
+
+/// A body that a force moves, whose friction is not known of.
+const BODY: &str = "
+model: body
+parameters: {m: 2}
+x: [v]
+y: [q]
+u: [f]
+assume: [m > 0]
+f_x: {v: f/m}
+f_y: {q: v}
+phi: [v]
+simulation: {step: 0.01, initial: {v: 0.01, q: 0}}
+";
+
+#[test]
+fn innovations_of_which_some_are_far_too_large_are_not_as_expected() {
+    let rows: String = (0..300_u32).map(|k| format!("{0},{0},0,1.5\n", f64::from(k) / 64.0)).collect();
+    let rows = format!("t,q,f,v\n{rows}");
+    let mut log = Log::open("log.csv", rows.as_bytes()).expect("a header");
+    let replay = resolve(BODY, &mut log).expect("the columns have a meaning");
+    let mut replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
+    let mut notes = |surprise: f64| {
+        (replayed.summary.contradiction, replayed.summary.surprise) = (None, Some(surprise));
+        replay.advise(&replayed).pop().expect("the speed is off").notes.concat()
+    };
+    assert!(notes(1.2).contains("the innovations are as expected"), "{}", notes(1.2));
+    let (some, all) = (notes(14.0), "the innovations are as expected");
+    assert!(some.contains("but some so large that their normalised square is 14.0") && !some.contains(all), "{some}");
+}
+
+#[test]
+fn a_plant_that_is_recorded_from_rest_has_the_rates_of_its_later_rows() -> Result<(), Failure> {
+    // The force of 6 begins after the first row, which has none.
+    let row =
+        |k: u32| format!("{},{},{}\n", f64::from(k) * 0.01, (f64::from(k) * 0.7).sin(), if k == 0 { 0.0 } else { 6.0 });
+    let rows: String = (0..300).map(row).collect();
+    let (replayed, _) = replay(BODY, &format!("t,q,f\n{rows}"))?;
+    let known = replayed.summary.known.as_ref().expect("known numbers");
+    let disturbance = known.numbers.iter().find(|numbers| numbers.what == "disturbance").expect("it is assumed");
+    // A hundredth of 3 m/s^2 over 1000 samples, but ten times the speed of 0.01 m/s at most, per root of their 10 s.
+    let most = 10.0 * 0.01 / 10.0_f64.sqrt();
+    assert!((disturbance.values[0].value / most - 1.0).abs() < 0.01, "{}", replayed.text());
     Ok(())
 }
