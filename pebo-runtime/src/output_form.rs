@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::numeric::dense::product;
+use crate::numeric::dense::{applied, product};
 use crate::numeric::sum::all_finite;
 use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression, Sides};
 
@@ -168,19 +168,7 @@ where
     }
 
     fn ahead(&self, start: &Flow<M::Scalar, NW>, z: &SVector<M::Scalar, NW>, dt: M::Scalar) -> SVector<M::Scalar, NW> {
-        if self.expected.is_none() {
-            return *z;
-        }
-        // Outputs alone: the slopes are those of the estimate.
-        let mut ahead = *z;
-        for row in 0..NW - NZ {
-            let mut rate = start.h[row];
-            for (column, &coordinate) in z.iter().enumerate() {
-                rate += start.lambda[(row, column)] * coordinate;
-            }
-            ahead[row] += rate * dt;
-        }
-        ahead
+        if self.expected.is_some() { z + (applied(&start.lambda, z) + start.h) * dt } else { *z }
     }
 
     fn regression(

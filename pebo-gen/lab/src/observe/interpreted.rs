@@ -260,9 +260,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     }
 
     fn ahead(&self, start: &Flow<f64, N>, z: &SVector<f64, N>, dt: f64) -> SVector<f64, N> {
-        let (Some(_), Some((rates, _))) = (&self.expected, &self.output) else { return *z };
-        let rate = start.lambda * z + start.h;
-        SVector::from_fn(|row, _| if row < *rates { z[row] + rate[row] * dt } else { z[row] })
+        if self.expected.is_some() { z + (start.lambda * z + start.h) * dt } else { *z }
     }
 
     fn output_slopes(&self, y: &SVector<f64, N>, u: &SVector<f64, N>, z: &SVector<f64, N>) -> OutputSlopes<f64, N, N> {

@@ -415,12 +415,13 @@ impl Module<'_> {
                 }
             },
         };
-        let output = settings.output.then(|| match (&settings.expected, &settings.operator) {
-            (Some(_), Operator::Sampled(deviations)) => {
+        let output = settings.output.then(|| {
+            if let (Some(_), Operator::Sampled(deviations)) = (&settings.expected, &settings.operator) {
                 let list = list_of_deviations(deviations, &mut one);
                 quote!(#list let model = OutputForm::expecting(model, ROWS, &deviations)?;)
+            } else {
+                quote!(let model = OutputForm::new(model);)
             }
-            _ => quote!(let model = OutputForm::new(model);),
         });
         quote!(#output #within #lists #estimator #bounded)
     }

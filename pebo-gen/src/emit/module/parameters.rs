@@ -12,7 +12,8 @@ use pebo_design::plant::Parameter;
 
 /// A number as an author writes it: 8.875 rather than 71/8.
 pub(in crate::emit) fn decimal(arena: &Arena, value: &Rational) -> String {
-    let digits = literal(&value.abs()).filter(|_| !value.is_integer());
+    // In prose there are no groups of digits.
+    let digits = literal(&value.abs()).filter(|_| !value.is_integer()).map(|digits| digits.replace('_', ""));
     match digits {
         Some(digits) if value.is_negative() => format!("-{digits}"),
         Some(digits) => digits,

@@ -198,7 +198,8 @@ simulation: {step: 0.01, initial: {v: 0.01, q: 0}}
 
 #[test]
 fn innovations_of_which_some_are_far_too_large_are_not_as_expected() {
-    let rows: String = (0..300_u32).map(|k| format!("{0},{0},0,1.5\n", f64::from(k) / 64.0)).collect();
+    let row = |k: u32| format!("{0},{0},0,1.5\n", f64::from(k) / 64.0);
+    let rows: String = (0..300).map(row).collect();
     let rows = format!("t,q,f,v\n{rows}");
     let mut log = Log::open("log.csv", rows.as_bytes()).expect("a header");
     let replay = resolve(BODY, &mut log).expect("the columns have a meaning");
