@@ -104,8 +104,8 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         self.flow(terms, u)
     }
 
-    /// The coordinates expected after `dt` seconds, at which the flow at the end of an interval is asked for: of a
-    /// [`LINEARISED`](Self::LINEARISED) model, from the flow at its start. By default those at the start.
+    /// The coordinates expected after `dt` seconds, at which a [`LINEARISED`](Self::LINEARISED) model is asked for its flow
+    /// at the end of an interval; from the flow at the start. By default those at the start.
     fn ahead(
         &self,
         _start: &Flow<Self::Scalar, NZ>,

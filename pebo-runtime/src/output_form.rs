@@ -88,8 +88,8 @@ impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
     /// The same for a model whose `p_0` are outputs, at these indices in `y`, with samples of these standard deviations,
     /// and whose `p_1` is 0. Its rates and estimates are those of the outputs as the observer expects them, and not of
     /// samples with their noise: worth it where `phi_left` depends on outputs, or the rates on them otherwise than by a
-    /// constant factor. An output that is expected beyond [`NEAR`](Self::NEAR) does not drive the
-    /// rates, nor do expected outputs at which they have no value: the sample does.
+    /// constant factor. An output that is expected further than [`NEAR`](Self::NEAR) from its sample does not drive the
+    /// rates, nor do expected outputs at which these have no value: the sample does.
     ///
     /// # Errors
     /// [`Fault::Limits`] if an index is out of `y`, [`Fault::Gain`] if a standard deviation is negative or not finite.

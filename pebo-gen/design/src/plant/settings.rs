@@ -14,8 +14,8 @@ pub struct Settings<N> {
     /// True if the outputs themselves are the regressand (`OutputForm` of the runtime): unknowns and extension are then
     /// those of the outputs whose rates are used, followed by those of the coordinates.
     pub output: bool,
-    /// In the output form: the indices of the outputs in y, where estimates are made of the outputs that the observer
-    /// expects.
+    /// In the output form: the indices of the outputs in y, where rates and estimates are those of the outputs that the
+    /// observer expects.
     pub expected: Option<Vec<usize>>,
     /// The standard deviations of the outputs' sensors, where their noise is in the factor of the unknown too.
     pub errors_in_variables: Option<Vec<N>>,

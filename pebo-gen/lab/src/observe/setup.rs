@@ -19,7 +19,7 @@ pub(crate) struct Settings {
     pub(crate) operator: Operator,
     /// True in the output form, where the outputs themselves are the regressand.
     pub(crate) output: bool,
-    /// The indices of the rows' outputs, where estimates are made of the expected outputs.
+    /// The indices of the rows' outputs, where the model is evaluated at the expected outputs.
     pub(crate) expected: Option<Vec<usize>>,
     /// The standard deviations of the sensors, where their noise is in the factor of the unknown too.
     pub(crate) errors_in_variables: Option<Vec<f64>>,

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! of which the diagonals are taken. Samples drive the cascade where their outputs are no states of the observer: the noise
-//! of their sensors is process noise too, and `D_y z'` is without the slopes of known terms in the output form. For a regression whose
-//! unknowns are functions of theta, both are carried over to these functions.
+//! of their sensors is process noise too, and `D_y z'` is without the slopes that the output form has. For a regression
+//! whose unknowns are functions of theta, both are carried over to these functions.
 
 use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::analysis::{Derivation, OutputSlopes, Regression, RegressionKind, are_affine_in_outputs};

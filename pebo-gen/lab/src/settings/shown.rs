@@ -56,7 +56,8 @@ impl Shown {
         let first = samples
             .iter()
             .filter_map(|(signal, values)| Some((*signal, values.iter().copied().find(|value| value.is_finite())?)));
-        let whole = (0..times.len()).step_by(EVERY).map(|k| samples.iter().map(|(_, values)| values[k]).collect());
+        let rows = samples.iter().map(|(_, values)| values.len()).min().unwrap_or_default();
+        let whole = (0..rows).step_by(EVERY).map(|k| samples.iter().map(|(_, values)| values[k]).collect());
         let measured = samples.iter().filter(|(signal, _)| sensors.contains(signal));
         Self {
             period: period.or_else(|| median(intervals.collect())),

@@ -216,14 +216,17 @@ fn innovations_of_which_some_are_far_too_large_are_not_as_expected() {
 #[test]
 fn a_plant_that_is_recorded_from_rest_has_the_rates_of_its_later_rows() -> Result<(), Failure> {
     // The force of 6 begins after the first row, which has none.
-    let row =
-        |k: u32| format!("{},{},{}\n", f64::from(k) * 0.01, (f64::from(k) * 0.7).sin(), if k == 0 { 0.0 } else { 6.0 });
-    let rows: String = (0..300).map(row).collect();
-    let (replayed, _) = replay(BODY, &format!("t,q,f\n{rows}"))?;
-    let known = replayed.summary.known.as_ref().expect("known numbers");
-    let disturbance = known.numbers.iter().find(|numbers| numbers.what == "disturbance").expect("it is assumed");
-    // A hundredth of 3 m/s^2 over 1000 samples, but ten times the speed of 0.01 m/s at most, per root of their 10 s.
-    let most = 10.0 * 0.01 / 10.0_f64.sqrt();
-    assert!((disturbance.values[0].value / most - 1.0).abs() < 0.01, "{}", replayed.text());
+    let row = |k: u32| format!("{},{}\n", (f64::from(k) * 0.7).sin(), if k == 0 { 0.0 } else { 6.0 });
+    let rows = |lead: fn(u32) -> String| (0..300).map(|k| lead(k) + &row(k)).collect::<String>();
+    let timed = (BODY.to_owned(), format!("t,q,f\n{}", rows(|k| format!("{},", f64::from(k) * 0.01))));
+    let counted = (format!("{BODY}recording: {{step: 0.01}}\n"), format!("q,f\n{}", rows(|_| String::new())));
+    for (model, recording) in [timed, counted] {
+        let (replayed, _) = replay(&model, &recording)?;
+        let known = replayed.summary.known.as_ref().expect("known numbers");
+        let disturbance = known.numbers.iter().find(|numbers| numbers.what == "disturbance").expect("it is assumed");
+        // A hundredth of 3 m/s^2 over 1000 samples, but ten times the speed of 0.01 m/s at most, per root of their 10 s.
+        let most = 10.0 * 0.01 / 10.0_f64.sqrt();
+        assert!((disturbance.values[0].value / most - 1.0).abs() < 0.01, "{}", replayed.text());
+    }
     Ok(())
 }
