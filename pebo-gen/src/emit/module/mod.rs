@@ -13,6 +13,7 @@ pub(crate) mod paper;
 mod parameters;
 mod permission;
 pub(crate) mod prose;
+mod settings_words;
 pub(crate) mod signals;
 mod terms;
 

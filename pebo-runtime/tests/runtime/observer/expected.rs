@@ -56,6 +56,7 @@ fn expecting() -> Result<OutputForm<Tank, f64, 1, 1>, Fault> {
 
 #[test]
 fn rates_are_those_of_the_expected_output_near_the_sample() -> Result<(), Fault> {
+    // To rounding: each is one root.
     let (form, plain) = (expecting()?, OutputForm::<_, _, 1, 1>::new(Tank));
     let known =
         |form: &OutputForm<Tank, f64, 1, 1>, y: f64, expected: f64| flow(form, y, &Vector2::new(expected, 7.0)).h.x;
