@@ -65,7 +65,10 @@ impl Derived {
         let plant = Plant::resolve_within(&model, budget)?;
         if !plant.phi.is_empty() {
             let derivation = Derivation::derive(&plant);
-            return Ok(Self { model, plant, derivation });
+            return Ok(match search::lifted(&plant, &derivation) {
+                Some(lifted) => Self { model, plant: lifted.plant, derivation: lifted.derivation },
+                None => Self { model, plant, derivation },
+            });
         }
         if let Some(derivation) = Derivation::of_contradiction(&plant) {
             return Ok(Self { model, plant, derivation });
@@ -111,15 +114,13 @@ impl Derived {
             TransformOrigin::Given => true,
             // The class knows all transforms of linear plants and coils.
             TransformOrigin::Class => matches!(self.plant.class, Some(Class::Mechanical(_))),
-            TransformOrigin::Found => false,
+            TransformOrigin::Found | TransformOrigin::Lifted { .. } => false,
         };
         let refused = searched && self.derivation.outcome != Outcome::Accepted;
         let mut open = diagnostics.iter_mut().filter(|d| refused && search::settles(d.code, &self.derivation));
         if let Some(first) = open.next() {
             let budget = self.plant.arena.budget();
-            let solve = || search::solve(&self.plant, self.plant.cascade_class);
-            let of_products = search::of_products(&self.plant, &self.derivation);
-            let search = of_products.unwrap_or_else(|| budget.share(SHARE_OF_ADVICE, solve));
+            let search = budget.share(SHARE_OF_ADVICE, || search::solve(&self.plant, self.plant.cascade_class));
             *first = search.advise(&self.plant, first.clone());
             // A mend of the first mends the others.
             if search.verdict == SearchVerdict::Found {

@@ -37,7 +37,11 @@ pub(crate) fn sections(subject: &Subject<'_>) -> Vec<Section> {
         Section { id, verdict, html: html.finish(), places }
     };
     // The author wrote nothing of a transform that the search found.
-    let transform = if plant.origin == TransformOrigin::Found { Vec::new() } else { spans(&plant.phi) };
+    let transform = match plant.origin {
+        TransformOrigin::Found => Vec::new(),
+        TransformOrigin::Lifted { written } => spans(&plant.phi[..written]),
+        TransformOrigin::Given | TransformOrigin::Class => spans(&plant.phi),
+    };
     let regressed = regressed(subject);
     let moved: Vec<Span> = transform.iter().copied().chain(rates(plant)).collect();
     let inverse: Vec<Span> = transform.iter().copied().chain(given_inverse(plant)).collect();

@@ -17,6 +17,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
         }
         html.paragraph(match plant.origin {
             TransformOrigin::Given => "The author of the model gives it.",
+            TransformOrigin::Lifted { .. } => "The author of the model gives its first components.",
             TransformOrigin::Class => "It follows from the class of the plant.",
             TransformOrigin::Found => "The model has none: it was found by a search, and then proved as any other.",
         });

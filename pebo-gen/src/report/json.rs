@@ -11,7 +11,7 @@ use pebo_design::analysis::{
     BlindTrajectory, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome,
     Regression, UnusedOutput, Witness,
 };
-use pebo_design::plant::{Noisier, Plant};
+use pebo_design::plant::{Noisier, Plant, TransformOrigin};
 use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
 
 /// The object of one model, which [`CHECK_SCHEMA`](super::CHECK_SCHEMA) describes.
@@ -70,6 +70,9 @@ struct CostReport {
 struct TransformReport {
     origin: &'static str,
     z: Vec<String>,
+    /// The number of components after the author's own, which are products of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lifted: Option<usize>,
     /// The transform to which it was preferred, where that takes the noise of samples or needs conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     noisier: Option<NoisierReport>,
@@ -228,6 +231,10 @@ impl Report {
             phi: (!plant.phi.is_empty()).then(|| TransformReport {
                 origin: plant.origin.word(),
                 z: printed(arena, &plant.transform()),
+                lifted: match plant.origin {
+                    TransformOrigin::Lifted { written } => Some(plant.phi.len() - written),
+                    _ => None,
+                },
                 noisier: plant.noisier.as_ref().map(|found| noisier(arena, found)),
             }),
             time: plant.time.map(|time| arena.name(time)),

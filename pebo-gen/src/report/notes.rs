@@ -6,7 +6,7 @@ use pebo_cas::Symbol;
 use pebo_design::analysis::{
     Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
 };
-use pebo_design::plant::{Noisier, Plant, RelationForm};
+use pebo_design::plant::{Noisier, Plant, RelationForm, TransformOrigin};
 use pebo_design::source::{Code, Diagnostic, counted, listed};
 
 /// The meaning of the model's verdict.
@@ -23,9 +23,17 @@ pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
     }
 }
 
-/// Notes on a transform that was found: the one to which it was preferred.
+/// Notes on a transform that was found, or lifted: the one to which it was preferred, and the products in it.
 pub(crate) fn transform(plant: &Plant) -> Vec<String> {
     let arena = &plant.arena;
+    if let TransformOrigin::Lifted { written } = plant.origin {
+        let (first, last) = (written + 1, plant.phi.len());
+        let added =
+            if first == last { format!("z{first} is a product") } else { format!("z{first} to z{last} are products") };
+        return vec![format!(
+            "{added} of the components of phi: the outputs are not affine in phi as it is written, and with products they are"
+        )];
+    }
     let names = |symbols: BTreeSet<Symbol>| {
         let names: Vec<String> = symbols.into_iter().map(|symbol| arena.name(symbol)).collect();
         listed(names.iter().map(String::as_str))

@@ -17,7 +17,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     let meaning = notes::meaning(derivation);
     let mut text = format!("{}: {}: {meaning}\n", plant.name, derivation.outcome.word());
     expansion(&mut text, plant);
-    if plant.origin == TransformOrigin::Found {
+    if matches!(plant.origin, TransformOrigin::Found | TransformOrigin::Lifted { .. }) {
         let components = plant.transform().into_iter().enumerate();
         let mut lines: Vec<String> =
             components.map(|(i, e)| format!("z{} = {}", i + 1, plant.arena.print(e))).collect();

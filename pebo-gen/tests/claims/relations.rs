@@ -38,7 +38,7 @@ pub(super) const RELATIONS: &[Row] = &[
     (
         "a square under a generalised cascade with an unequal one",
         "x: [a, b]\ny: [s]\nu: [u]\nf_x: {a: u - a, b: u - 2*b}\nphi: [a, b]\nidentities: [s - a^2 - b^2]",
-        Undecided(Code::RegressionUndecided),
+        Accepted("gpebo static over-parameterised excitation"),
     ),
     // The terms around the states in an output's value are removed.
     (

@@ -102,13 +102,26 @@ fn a_sign_of_one_constant_is_enough_where_products_of_components_are_accepted_wi
     assert!(candidate.is_full());
 }
 
+/// A phi in which the outputs are not affine is accepted with products of its components, after the author's own.
 #[test]
-fn products_of_the_components_of_a_phi_are_its_mend() {
+fn a_phi_is_lifted_by_products_of_its_components() {
     let lines = "x: [th, w]\ny: [i, j]\nu: [v, s]\nangles: {th: 2*pi}\nf_x: {th: w, w: j*cos(th) - i*sin(th) - w}\n\
         f_y: {i: v + w*sin(th), j: s - w*cos(th)}\nphi: [i + cos(th), j + sin(th), w]";
-    let refused = answered(&format!("model: m\n{lines}\n"));
-    let help = refused.diagnostics[0].help.clone().unwrap_or_default();
-    assert!(help.starts_with("use `phi: [i + cos(th), j + sin(th), w, (i + cos(th))^2"), "{help}");
+    let motor = answered(&format!("model: m\n{lines}\n"));
+    assert_eq!(motor.standing, Standing::Accepted, "{:?}", motor.diagnostics);
+    let line = motor.report.line();
+    let phi = r#""phi":{"origin":"given","z":["i + cos(th)","j + sin(th)","w","(i + cos(th))^2","#;
+    assert!(line.contains(phi) && line.contains(r#""lifted":"#), "{line}");
+    assert!(line.contains(r#""parameterisation":"over-parameterised""#), "{line}");
+
+    // By the value of an output too: r^2 = a^2 + b^2.
+    let range = "x: [a, b, c, d]\ny: [r]\nu: [v, w]\nassume: [r > 0]\nf_x: {a: v + c, b: w + d, c: 0, d: 0}\n\
+        g_y: {r: sqrt(a^2 + b^2)}\nphi: [a, b, c, d]\nphi_left: {a: z1, b: z2, c: z3, d: z4}";
+    let range = answered(&format!("model: m\n{range}\n"));
+    assert_eq!(range.standing, Standing::Accepted, "{:?}", range.diagnostics);
+    let line = range.report.line();
+    let phi = r#""z":["a","b","c","d","a^2 + b^2","a*c + b*d","c^2 + d^2"],"lifted":3}"#;
+    assert!(line.contains(phi) && line.contains(r#""origin":"given","asks""#), "{line}");
 }
 
 fn answered(text: &str) -> pebo_gen::Answer {

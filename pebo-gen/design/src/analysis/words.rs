@@ -4,7 +4,7 @@
 //! of words are beside their enumerations, as readers of input need them too: [`Class::name`](super::Class::name),
 //! [`Relation::sign`](pebo_cas::Relation::sign) and [`Code::name`](crate::source::Code::name).
 
-use crate::plant::Plant;
+use crate::plant::{Plant, TransformOrigin};
 
 use super::advice::equilibrium::Equilibrium;
 use super::design::{Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, UnusedReason, Verdict};
@@ -105,8 +105,10 @@ impl Equilibrium {
 }
 
 impl Regression {
-    /// The parameterisation in a word.
+    /// The parameterisation in a word: over-parameterised too where functions of the author's own unknowns are among
+    /// theta.
     pub fn parameterisation(&self, plant: &Plant) -> &'static str {
-        if self.is_linear(plant) { "linear" } else { "over-parameterised" }
+        let is_lifted = matches!(plant.origin, TransformOrigin::Lifted { .. });
+        if self.is_linear(plant) && !is_lifted { "linear" } else { "over-parameterised" }
     }
 }

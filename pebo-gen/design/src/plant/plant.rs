@@ -90,6 +90,11 @@ pub struct Plant {
 pub enum TransformOrigin {
     /// The author gave it, or nobody has yet.
     Given,
+    /// The author gave the first components; the others are products of them, in which the outputs are affine.
+    Lifted {
+        /// The number of components that the author gave.
+        written: usize,
+    },
     /// The class that the plant was written by gives it.
     Class,
     /// It was searched for.
@@ -100,7 +105,7 @@ impl TransformOrigin {
     /// The origin in a word.
     pub fn word(self) -> &'static str {
         match self {
-            Self::Given => "given",
+            Self::Given | Self::Lifted { .. } => "given",
             Self::Class => "class",
             Self::Found => "found",
         }
@@ -216,6 +221,22 @@ impl Plant {
             psi,
             ..self.clone()
         }
+    }
+
+    /// The same plant with further components of the transform, at the place of the author's last one.
+    #[must_use]
+    pub fn lifted(&self, products: &[Expr]) -> Self {
+        let mut plant = self.with_transform(&[&self.transform(), products].concat());
+        let last = self.phi.last().map_or(Span::NOWHERE, |component| component.span);
+        for (index, component) in plant.phi.iter_mut().enumerate() {
+            component.span = self.phi.get(index).map_or(last, |written| written.span);
+        }
+        plant.origin = match self.origin {
+            TransformOrigin::Given => TransformOrigin::Lifted { written: self.phi.len() },
+            origin => origin,
+        };
+        plant.phi_left.clone_from(&self.phi_left);
+        plant
     }
 
     /// The same plant where these are positive.

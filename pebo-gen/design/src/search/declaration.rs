@@ -14,7 +14,6 @@ use crate::source;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::candidate::Candidate;
-use super::closure;
 use super::problem::Problem;
 
 /// The share of the remaining budget for each declaration.
@@ -193,8 +192,8 @@ fn with_signs(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<(Candid
         let full = if candidate.is_full() {
             Some(candidate)
         } else {
-            let accepted = || closure::coordinates::accepted(&with_sign, &candidate.plant, &candidate.derivation);
-            arena.budget().share(SHARE, accepted)
+            let lifted = || super::lifted::lifted(&with_sign, &candidate.plant, &candidate.derivation);
+            arena.budget().share(SHARE, lifted)
         };
         if let Some(full) = full {
             return Some((full, Declaration::Positive(positive)));

@@ -107,19 +107,3 @@ pub enum Start {
     /// The outputs' rates, in the components of a transform with a generalised cascade.
     Products,
 }
-
-impl Search {
-    /// The result where one transform was looked for and is accepted.
-    pub(super) fn of(accepted: Candidate) -> Self {
-        Self {
-            verdict: SearchVerdict::Found,
-            candidates: vec![accepted],
-            symmetry: None,
-            declared: Vec::new(),
-            bound: None,
-            affine: None,
-            generalised: None,
-            tried: Vec::new(),
-        }
-    }
-}

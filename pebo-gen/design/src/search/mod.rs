@@ -27,6 +27,7 @@ mod declaration;
 mod found;
 mod frame;
 mod functions;
+mod lifted;
 mod partial;
 mod sample;
 mod symmetry;
@@ -35,7 +36,7 @@ mod tests;
 pub mod words;
 
 use crate::analysis::{Class, Derivation, Verdict};
-use crate::plant::Plant;
+use crate::plant::{Plant, TransformOrigin};
 
 use attempts::attempted;
 pub use bounds::{Bound, BoundClass, Evidence};
@@ -122,16 +123,15 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     Search { verdict, candidates, symmetry, declared, bound, affine, generalised, tried }
 }
 
-/// The transform that consists of products of the components of the plant's own, where that has a generalised cascade
-/// and a left inverse but the outputs' rates are not affine in it; none where it is not accepted.
+/// The author's transform with products of its components, where it has a generalised cascade and a left inverse but
+/// the outputs are not affine in it; none where that is not accepted.
 #[must_use]
-pub fn of_products(plant: &Plant, derivation: &Derivation) -> Option<Search> {
-    let problem = Problem::of(plant);
-    if derivation.regression.verdict == Verdict::Proved {
+pub fn lifted(plant: &Plant, derivation: &Derivation) -> Option<Candidate> {
+    if plant.origin != TransformOrigin::Given || derivation.regression.verdict == Verdict::Proved {
         return None;
     }
-    let accepted = || closure::coordinates::accepted(&problem, plant, derivation);
-    plant.arena.budget().share(FOR_PRODUCTS, accepted).map(Search::of)
+    let problem = Problem::of(plant);
+    plant.arena.budget().share(FOR_PRODUCTS, || lifted::lifted(&problem, plant, derivation))
 }
 
 /// The best transform of a plant, if one is accepted that recovers all states.

@@ -8,7 +8,7 @@ use pebo_cas::tower::Obstacle;
 
 const NOT_AFFINE: &str = "not an affine function of phi with coefficients in y and u";
 const NOT_SEARCHED: &str =
-    "for a generalised cascade, z = xi + Psi theta, a regression in functions of theta is not searched for";
+    "for a generalised cascade, z = xi + Psi theta, other functions of phi than products are not searched for";
 
 fn open(span: Span, message: impl Into<Box<str>>) -> Diagnostic {
     Diagnostic::error(Code::RegressionUndecided, span, message)

@@ -17,11 +17,10 @@ use pebo_cas::{Expr, Symbol};
 use super::MOST;
 use super::constants::constants;
 use super::products::terms;
-use crate::analysis::{Class, Derivation};
+use crate::analysis::Derivation;
 use crate::plant::Plant;
-use crate::search::candidate::Candidate;
 use crate::search::problem::Problem;
-use crate::search::sample::{is_affine_in, rank_of_gradients};
+use crate::search::sample::is_affine_in;
 
 /// The degree to which rates are looked for as polynomials in the components: of higher ones, and of the products in
 /// their rates, there are more than a closure may have.
@@ -103,18 +102,6 @@ fn polynomial(problem: &Problem<'_>, rate: Expr, transform: &BTreeMap<Symbol, Ex
         }
     }
     Ok(None)
-}
-
-/// The accepted transform whose components are these functions, of one with a generalised cascade and a left inverse.
-pub(in crate::search) fn accepted(problem: &Problem<'_>, plant: &Plant, derivation: &Derivation) -> Option<Candidate> {
-    if derivation.class != Class::Gpebo {
-        return None;
-    }
-    let products = closure(problem, plant, derivation).ok()??;
-    if rank_of_gradients(problem, &products).ok()? < problem.x.len() {
-        return None;
-    }
-    Some(Candidate::of(problem, &products)).filter(Candidate::is_full)
 }
 
 /// The products of hidden symbols of which a formula is a combination with coefficients in y and u; none where they
