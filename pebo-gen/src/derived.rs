@@ -4,7 +4,7 @@
 //! searched for. Everything else is computed on demand.
 
 use crate::emit::{self, EmitError, Emitted, Scalar};
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Arena, Budget, Rational};
 use pebo_design::analysis::{Derivation, Outcome};
 use pebo_design::model::Model;
@@ -133,7 +133,7 @@ impl Derived {
     /// Writes the observer as Rust, and proves that the written code computes the derived formulas.
     pub fn emit(&self, scalar: Scalar) -> Result<Emitted, EmitError> {
         let domain = self.plant.domain();
-        let is_zero = |arena: &Arena, expr| decide(arena, expr, &domain).is_zero();
+        let is_zero = |arena: &Arena, expr| is_zero(arena, expr, &domain);
         emit::emit(&self.plant, &self.derivation, self.settings().0.as_ref(), scalar, is_zero)
     }
 

@@ -1,6 +1,6 @@
 //! Claim 1: the rate of the transform term by term, its terms in unmeasured signals, and the rest.
 
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Arena, Expr, Node, Rational, Symbol};
 use pebo_design::analysis::{Class, Verdict};
 use pebo_design::plant::Plant;
@@ -195,7 +195,7 @@ fn split(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_>, index: usi
         let row = &lambda[index];
         arena.sum(row.iter().zip(&plant.z).map(|(factor, z)| arena.mul(*factor, arena.of_symbol(*z))))
     });
-    let vanishes = decide(arena, rest, &domain).is_zero();
+    let vanishes = is_zero(arena, rest, &domain);
     let right = match combined {
         Some(combined) if vanishes => combined,
         Some(combined) => arena.add(combined, rest),

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use super::cells::{Cell, MOST_CELLS, Side};
 use super::manifold::Manifold;
 use super::reducible::{Factors, factors};
-use super::zero::decide;
+use super::zero::is_zero;
 use crate::graph::expr::{Expr, Symbol};
 use crate::tower::Obstacle;
 use crate::{Arena, Domain, Relation};
@@ -144,7 +144,7 @@ impl Domain {
         let mut assumed = self.facts.iter().filter(|(_, relation)| *relation != Relation::NonNegative);
         assumed.any(|(fact, _)| {
             let there = arena.substitute(fact, &determined);
-            there != fact && decide(arena, there, &self.without_equations()).is_zero()
+            there != fact && is_zero(arena, there, &self.without_equations())
         })
     }
 
@@ -152,7 +152,7 @@ impl Domain {
     fn has_sign(&self, arena: &Arena, expr: Expr) -> bool {
         self.implies(arena, expr, Relation::Positive)
             || self.implies(arena, arena.neg(expr), Relation::Positive)
-            || decide(arena, expr, self).is_zero()
+            || is_zero(arena, expr, self)
     }
 }
 

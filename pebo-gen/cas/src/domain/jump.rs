@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::manifold::Manifold;
-use super::zero::decide;
+use super::zero::is_zero;
 use crate::graph::conditions::Regularity;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
@@ -36,7 +36,7 @@ impl Domain {
             let symbols = vec![BTreeSet::new(), arena.symbols_of(&[border]), BTreeSet::new()];
             let wall = Manifold::new(arena, &self.facts, vec![border], symbols).determined();
             let by = arena.sub(arena.substitute(above, &wall), arena.substitute(below, &wall));
-            if !decide(arena, by, self).is_zero() && !self.vanishes_with(arena, by, border).unwrap_or(false) {
+            if !is_zero(arena, by, self) && !self.vanishes_with(arena, by, border).unwrap_or(false) {
                 jumps.push(Jump { border, by: Some(by) });
             }
         }

@@ -10,8 +10,9 @@
 //!
 //! There are two readers. The normal form takes *exact* steps: their divisors vanish nowhere, so they lose no solution.
 //! An equation that no such step solves is *open*: it holds, but nothing is concluded from it. Points are completed by
-//! any steps: a point at which a divisor vanishes is not taken. Where steps do not suffice, all equations are solved
-//! near the values that are drawn: as written, since eliminating symbols makes degrees grow.
+//! any steps: a point at which a divisor vanishes is not taken. Where steps do not suffice, the equations are solved
+//! near the values that are drawn: as written, since eliminating symbols makes degrees grow. Only those that give a
+//! symbol which no other holds are steps after that.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -240,14 +241,28 @@ impl Solver<'_> {
             held.extend(arena.symbols_of(&[open.remove(way.equation)]));
             steps.push(way.step);
         }
-        if !self.exact
-            && !open.is_empty()
-            && let Some(system) = System::new(arena, equations)
-        {
-            return Ok(Solution { system, ..Solution::default() });
+        if !self.exact && !open.is_empty() {
+            let (steps, rest) = self.given(equations)?;
+            if let Some(system) = System::new(arena, rest) {
+                return Ok(Solution { steps, system, ..Solution::default() });
+            }
         }
         self.join_partners(&mut steps)?;
         Ok(Solution { steps, open, ..Solution::default() })
+    }
+
+    /// Steps for symbols that one equation gives and no other holds, and the other equations. What they give is not drawn:
+    /// a drawn value would draw the symbols of its formula to it.
+    fn given(&self, mut equations: Vec<Expr>) -> Result<(Vec<Step>, Vec<Expr>), Obstacle> {
+        let mut steps = Vec::new();
+        loop {
+            let mut ways = self.candidates(&mut equations, &|degree| degree == 1)?;
+            let holders = |symbol| equations.iter().filter(|e| self.arena.symbols_of(&[**e]).contains(&symbol)).count();
+            ways.retain(|way| !way.cost.0 && holders(way.step.symbol) == 1);
+            let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { return Ok((steps, equations)) };
+            equations.remove(way.equation);
+            steps.push(way.step);
+        }
     }
 
     /// The ways to solve the equations; those that hold everywhere are dropped.
@@ -405,7 +420,7 @@ mod tests {
     use super::*;
     use crate::Domain;
     use crate::Relation;
-    use crate::domain::zero::{Answer, decide};
+    use crate::domain::zero::{Answer, decide, is_zero};
 
     /// The domain of equations in a, b, c; p must not occur in results.
     fn domain(arena: &Arena, equations: &[Expr]) -> Domain {
@@ -432,14 +447,32 @@ mod tests {
         for squared in [1, 3] {
             let circle = circle(&arena, squared);
             let domain = domain(&arena, &[circle]);
-            assert!(decide(&arena, arena.mul(circle, p), &domain).is_zero());
+            assert!(is_zero(&arena, arena.mul(circle, p), &domain));
             let quotient = arena.sub(arena.div(arena.number(squared), a), arena.add(a, arena.div(arena.mul(b, b), a)));
-            assert!(decide(&arena, quotient, &domain).is_zero());
+            assert!(is_zero(&arena, quotient, &domain));
             let Answer::NonZero(witness) = decide(&arena, arena.mul(a, c), &domain) else { panic!("a*c is not zero") };
             assert!(domain.contains(&arena, &witness.point), "{squared}: {:?}", witness.point);
             // Off the circle only: at its points this is r - squared = 0.
             assert!(!matches!(decide(&arena, arena.mul(circle, c), &domain), Answer::NonZero(_)));
         }
+    }
+
+    /// A symbol that one equation gives is not drawn: its value would draw the others to a point near it.
+    #[test]
+    fn what_one_equation_gives_follows_from_the_point() {
+        let arena = Arena::new();
+        let [a, b, c, _] = symbols(&arena);
+        let r = arena.variable("r");
+        // No formula solves the first: a^4 + b^4 + a b - 1.
+        let power = |e| arena.power(e, &4.into());
+        let oval = arena.sub(arena.sum([power(a), power(b), arena.mul(a, b)]), arena.one());
+        let scaled = arena.sub(c, arena.scale(a, &1000.into()));
+        let domain = domain(&arena, &[oval, scaled, arena.sub(r, arena.add(c, b))]);
+        let plan = domain.manifold.plan(&arena, domain.manifold.equations(), &Point::new()).expect("a plan");
+        assert!(plan.is_search() && plan.symbols().len() == 2, "{:?}", plan.symbols());
+        let points: Vec<Point> = domain.points(&arena, &[a, r]).take(5).collect();
+        assert_eq!(points.len(), 5);
+        assert!(points.iter().all(|point| domain.contains(&arena, point)));
     }
 
     #[test]
@@ -464,13 +497,13 @@ mod tests {
         // a*b = 0 has two branches: neither a nor b is zero on both.
         let domain = domain(&arena, &[arena.mul(a, b)]);
         assert!(domain.manifold.open().is_some());
-        assert!(!decide(&arena, a, &domain).is_zero() && !decide(&arena, b, &domain).is_zero());
+        assert!(!is_zero(&arena, a, &domain) && !is_zero(&arena, b, &domain));
         // a^2 = b^2 likewise: a - b vanishes on one branch, and one over it has no value there.
         let squares = arena.sub(arena.mul(a, a), arena.mul(b, b));
         let lines = self::domain(&arena, &[squares]);
         let difference = arena.sub(a, b);
         assert!(matches!(decide(&arena, difference, &lines), Answer::NonZero(_)));
-        assert!(decide(&arena, squares, &lines).is_zero());
+        assert!(is_zero(&arena, squares, &lines));
     }
 
     #[test]

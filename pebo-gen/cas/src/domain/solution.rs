@@ -16,7 +16,7 @@ use crate::graph::expr::{Expr, Symbol};
 pub(crate) struct Solution {
     pub steps: Vec<Step>,
     pub open: Vec<Expr>,
-    /// Equations that are solved from a start, in place of steps.
+    /// Equations that are solved from a start, before the steps.
     pub(super) system: System,
 }
 

@@ -4,6 +4,7 @@
 //! the proof is not about nothing). Refuted: at an exact point of the domain a rigorous enclosure of
 //! the value excludes zero. Neither relies on floating point or on the kernels being independent.
 
+use super::cells::Cell;
 use crate::Domain;
 use crate::forms::shared_sums::vanishes_over_shared_sums;
 use crate::graph::arena::Arena;
@@ -59,6 +60,20 @@ pub fn decide(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     }
 }
 
+/// Tests whether the expression is proved to be zero on the domain. False says nothing: unlike [`decide`] it looks for no
+/// point that refutes it.
+pub fn is_zero(arena: &Arena, expr: Expr, domain: &Domain) -> bool {
+    let on_cell = |cell: &Cell| by_normal_form(arena, cell.domain.analytic(arena, &[expr])[0], &cell.domain).is_zero();
+    match by_normal_form(arena, expr, domain) {
+        Answer::Zero => true,
+        Answer::NonZero(_) => false,
+        Answer::Open(_) => {
+            !arena.dividers(&[expr]).is_empty()
+                && domain.cells(arena, &[expr], |_| true).is_ok_and(|cells| cells.iter().all(on_cell))
+        }
+    }
+}
+
 /// The answer on the cells of the domain; none if these are not found, or one of them has no answer.
 fn on_cells(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Answer> {
     for cell in domain.cells(arena, &[expr], |_| true).ok()? {
@@ -76,8 +91,17 @@ fn on_cells(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Answer> {
     Some(Answer::Zero)
 }
 
-/// Decides it by the normal form of the expression as it is written.
+/// Decides it by the normal form of the expression as it is written, and else by points.
 fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
+    match by_normal_form(arena, expr, domain) {
+        Answer::Open(Obstacle::NoPoint) => Answer::Open(Obstacle::NoPoint),
+        Answer::Open(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
+        answer => answer,
+    }
+}
+
+/// Decides it by the normal form of the expression as it is written.
+fn by_normal_form(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     if arena.is_zero(expr) {
         return Answer::Zero;
     }
@@ -119,7 +143,7 @@ fn decide_as_written(arena: &Arena, expr: Expr, domain: &Domain) -> Answer {
     match normal {
         Ok(()) if exists || point_of(arena, expr, domain).is_some() => Answer::Zero,
         Ok(()) => Answer::Open(Obstacle::NoPoint),
-        Err(obstacle) => refute(arena, expr, domain).map_or(Answer::Open(obstacle), Answer::NonZero),
+        Err(obstacle) => Answer::Open(obstacle),
     }
 }
 

@@ -14,7 +14,7 @@ use super::opaque::OpaqueTerms;
 use super::oriented::Orientation;
 use super::scaled::scaled;
 use super::shared_sums::SharedSums;
-use crate::domain::zero::decide;
+use crate::domain::zero::is_zero;
 use crate::graph::conditions::Regularity;
 use crate::graph::function::{Conditions, Function};
 use crate::tower::Field;
@@ -345,7 +345,7 @@ pub fn with_fewer_conditions(arena: &Arena, domain: &Domain, expr: Expr, candida
     if most == 0 {
         return expr;
     }
-    let equal = |form: Expr| decide(arena, arena.sub(form, expr), domain).is_zero();
+    let equal = |form: Expr| is_zero(arena, arena.sub(form, expr), domain);
     candidates.iter().copied().find(|form| unproved(*form) < most && equal(*form)).unwrap_or(expr)
 }
 
@@ -366,7 +366,7 @@ pub fn shortest_equal(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[
     for &candidate in candidates {
         if operations(arena, candidate) < operations(arena, best)
             && adds_no_conditions(arena, domain, expr, candidate)
-            && decide(arena, arena.sub(candidate, expr), domain).is_zero()
+            && is_zero(arena, arena.sub(candidate, expr), domain)
         {
             best = candidate;
         }

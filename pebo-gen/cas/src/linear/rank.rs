@@ -6,7 +6,7 @@
 
 use super::Echelon;
 use super::pivots::pivots;
-use crate::domain::zero::decide;
+use crate::domain::zero::is_zero;
 use crate::graph::enclosure::Point;
 use crate::number::interval::{Interval, Precision};
 use crate::tower::{Field, Fraction, Obstacle};
@@ -105,7 +105,7 @@ pub fn null_vectors(
     for vector in &vectors {
         for row in rows {
             let product = arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, *b)));
-            if !decide(arena, product, domain).is_zero() {
+            if !is_zero(arena, product, domain) {
                 return Err(Obstacle::NoWitness);
             }
         }

@@ -5,7 +5,7 @@
 
 use crate::plant::{Formula, Plant};
 use crate::source::Diagnostic;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use pebo_cas::forms::tidy::shortest;
@@ -40,9 +40,9 @@ pub(super) fn cascade(plant: &Plant, domain: &Domain, index: usize, refusal: Dia
     }
     // Two that cancel are not to blame.
     let cancels = |one: &Share| {
-        shares.iter().any(|other| {
-            other.term.span != one.term.span && decide(arena, arena.add(one.whole, other.whole), domain).is_zero()
-        })
+        shares
+            .iter()
+            .any(|other| other.term.span != one.term.span && is_zero(arena, arena.add(one.whole, other.whole), domain))
     };
     let left: Vec<&Share> = shares.iter().filter(|share| !cancels(share)).collect();
     if left.len() > MOST_SPANS {

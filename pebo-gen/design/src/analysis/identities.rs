@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use crate::plant::{Formula, Output, Plant};
 use crate::source::{Code, Diagnostic};
-use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::domain::zero::{Answer, decide, is_zero};
 use pebo_cas::linear::rank::null_vectors;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
@@ -71,9 +71,7 @@ fn unruled(plant: &Plant, domain: &Domain, identity: &Formula) -> BTreeSet<Symbo
     let is_unruled = |symbol: &Symbol| {
         let constant = plant.parameters.iter().any(|parameter| parameter.symbol == *symbol);
         // A signal on which the identity does not depend on its manifold may have any rate.
-        !constant
-            && !rates.contains_key(symbol)
-            && !decide(arena, arena.derivative(identity.expr, *symbol), domain).is_zero()
+        !constant && !rates.contains_key(symbol) && !is_zero(arena, arena.derivative(identity.expr, *symbol), domain)
     };
     arena.symbols_of(&[identity.expr]).into_iter().filter(is_unruled).collect()
 }

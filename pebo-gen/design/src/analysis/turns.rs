@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use super::design::{Cascade, LeftInverse, Regression};
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic, Span};
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 /// States that turn at once are tried up to so many: each triples the ways.
@@ -35,7 +35,7 @@ impl Computed<'_> {
         let rows = regression.phi_1.iter().chain(&regression.primitive_1).flatten();
         let formulas = cascade.h.iter().chain(lambda).chain(&regression.phi_0).chain(rows);
         let domain = domain.without_equations();
-        let is_zero = |expr: Expr| decide(arena, expr, &domain).is_zero();
+        let is_zero = |expr: Expr| is_zero(arena, expr, &domain);
         let constants = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
         let is_constant = |expr: Expr| is_zero(expr) || arena.symbols_of(&[expr]).is_subset(&constants);
         formulas.chain(inverse.x.iter().map(|(_, formula)| formula)).map(change).all(is_zero)
@@ -91,7 +91,7 @@ fn is_same(plant: &Plant, domain: &Domain, (output, period): (Symbol, Expr), tur
     let signs = domain.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero).map(|(fact, _)| fact);
     let formulas = plant.rates().into_values().chain(values).chain(identities).chain(signs);
     let domain = domain.without_equations();
-    formulas.into_iter().all(|formula| decide(arena, change(formula), &domain).is_zero())
+    formulas.into_iter().all(|formula| is_zero(arena, change(formula), &domain))
 }
 
 /// States with so many periods, one of three for each: as they are, one more, or one less.

@@ -17,7 +17,7 @@ use super::{choice, closure, functions, sample};
 use crate::analysis::Class;
 use crate::plant::{Noisier, TransformOrigin};
 use pebo_cas::Expr;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::tower::Obstacle;
 
 /// The order of series that costs less than another form of transforms.
@@ -261,6 +261,10 @@ impl Attempts<'_> {
                 let of_y = functions::products(problem, &of_y, second)?;
                 Ok(Ansatz { of_x, of_y, weight: first + second })
             });
+            // The next degrees hold all of these functions, and more.
+            if self.tried.last().is_some_and(|attempt| attempt.obstacle.is_some()) {
+                return;
+            }
         }
     }
 
@@ -513,7 +517,7 @@ impl Attempts<'_> {
         };
         // Components that vanish by the values of outputs filter nothing; the rest may do alone.
         let domain = &problem.domain;
-        let is_zero = |component: &Expr| decide(problem.arena, *component, domain).is_zero();
+        let is_zero = |component: &Expr| is_zero(problem.arena, *component, domain);
         let rest: Vec<Expr> = match problem.plant.identities.as_slice() {
             [] => phi.clone(),
             _ => phi.iter().copied().filter(|component| !is_zero(component)).collect(),

@@ -2,7 +2,7 @@
 
 use crate::analysis::{Class, Derivation, Excitation, Outcome, Verdict};
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 
 use super::problem::Problem;
@@ -152,7 +152,7 @@ impl Candidate {
             return false;
         }
         let domain = self.plant.domain();
-        let vanishes = |component: &Expr| decide(arena, *component, &domain).is_zero();
+        let vanishes = |component: &Expr| is_zero(arena, *component, &domain);
         let z = self.plant.z.iter().copied().collect();
         let inverse = self.derivation.left_inverse.result.as_ref();
         inverse.is_some_and(|inverse| inverse.x.iter().any(|(_, formula)| !arena.depends_on(*formula, &z)))

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::plant::{Class, Plant};
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Expr, Symbol};
 
 /// A key of the class with its matrix, by rows.
@@ -46,7 +46,7 @@ fn factors(plant: &Plant, of: &[Symbol], moving: &BTreeSet<Symbol>) -> Option<Ve
             let terms = of.iter().zip(&factors).map(|(symbol, factor)| arena.mul(*factor, arena.of_symbol(*symbol)));
             let rest = arena.sub(component, arena.sum(terms.collect::<Vec<Expr>>()));
             let is_linear = factors.iter().all(|factor| !arena.depends_on(*factor, moving));
-            (is_linear && decide(arena, rest, &domain).is_zero()).then_some(factors)
+            (is_linear && is_zero(arena, rest, &domain)).then_some(factors)
         })
         .collect()
 }

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeSet;
 
-use pebo_cas::domain::zero::{decide, refute};
+use pebo_cas::domain::zero::{is_zero, refute};
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
 use pebo_cas::linear::rank::null_vectors;
@@ -114,8 +114,7 @@ fn directed(
         }))
     };
     let all = states.iter().enumerate().map(|(index, state)| (*state, of(index)));
-    let moving: Vec<(Symbol, Expr)> =
-        all.filter(|(_, speed)| !decide(arena, *speed, &problem.domain).is_zero()).collect();
+    let moving: Vec<(Symbol, Expr)> = all.filter(|(_, speed)| !is_zero(arena, *speed, &problem.domain)).collect();
     // The first state moves up.
     let is_downward = moving.first().is_some_and(|(_, speed)| arena.print(*speed).starts_with('-'));
     let turned = |(state, speed)| (state, if is_downward { arena.neg(speed) } else { speed });

@@ -2,7 +2,7 @@
 //! 2015, remark R5).
 
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Expr, Symbol};
 
 use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Verdict};
@@ -22,7 +22,7 @@ impl Drift {
         let cascade = derivation.cascade.result.as_ref().filter(|_| derivation.cascade.verdict == Verdict::Proved)?;
         let arena = &plant.arena;
         let domain = plant.domain();
-        let zero = |expr: &Expr| decide(arena, *expr, &domain).is_zero();
+        let zero = |expr: &Expr| is_zero(arena, *expr, &domain);
         let apart = |row: usize| cascade.lambda.as_ref().is_none_or(|lambda| lambda[row].iter().all(zero));
         let open: Vec<usize> = (0..cascade.h.len()).filter(|row| apart(*row) && !zero(&cascade.h[*row])).collect();
         let extension = match derivation.class {

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
 use pebo_cas::domain::cells::Side;
-use pebo_cas::domain::zero::{Answer, decide};
+use pebo_cas::domain::zero::{Answer, decide, is_zero};
 use pebo_cas::forms::oriented::Orientation;
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::tower::Obstacle;
@@ -113,7 +113,7 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     families.sort_by_key(|family| family.domain.manifold.reduced(arena).len());
     let is_all = |values: &BTreeMap<Symbol, Expr>| {
         let holds = |family: &Domain, (symbol, value): (&Symbol, &Expr)| {
-            decide(arena, arena.sub(arena.of_symbol(*symbol), *value), family).is_zero()
+            is_zero(arena, arena.sub(arena.of_symbol(*symbol), *value), family)
         };
         matches!(families.as_slice(), [family] if values.iter().all(|value| holds(&family.domain, value)))
     };
@@ -196,7 +196,7 @@ fn checked(plant: &Plant, domain: &Domain, values: &BTreeMap<Symbol, Expr>) -> R
 }
 
 fn vanishes(arena: &Arena, expr: Expr, values: &BTreeMap<Symbol, Expr>, there: &Domain) -> bool {
-    decide(arena, arena.substitute(expr, values), there).is_zero()
+    is_zero(arena, arena.substitute(expr, values), there)
 }
 
 /// z' as the cascade has it: `h`, or `Lambda phi + h`.
@@ -215,7 +215,7 @@ fn rank<'a>(arena: &Arena, domain: &Domain, mut rates: impl Iterator<Item = &'a 
     if answers().any(|answer| matches!(answer, Answer::NonZero(_))) {
         return Some(1);
     }
-    rates.all(|rate| decide(arena, *rate, domain).is_zero()).then_some(0)
+    rates.all(|rate| is_zero(arena, *rate, domain)).then_some(0)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Expr, Symbol};
 
 use super::drift::{Drift, rebase_residuals};
@@ -56,7 +56,7 @@ impl Derivation {
             let regression = self.regression.result.as_ref();
             regression
                 .and_then(|regression| rebase_residuals(plant, self.class, regression))
-                .is_some_and(|residuals| residuals.iter().all(|e| decide(&plant.arena, *e, &domain).is_zero()))
+                .is_some_and(|residuals| residuals.iter().all(|e| is_zero(&plant.arena, *e, &domain)))
         })
     }
 }

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::plant::class::Mechanical;
 use crate::plant::{self, Formula, Plant, TransformOrigin};
 use crate::source::{Code, Diagnostic, listed};
-use pebo_cas::domain::zero::{Answer, decide, point_of};
+use pebo_cas::domain::zero::{Answer, decide, is_zero, point_of};
 use pebo_cas::forms::opaque::as_written;
 use pebo_cas::linear::comparison::combine;
 use pebo_cas::linear::contrast::contrast;
@@ -30,6 +30,8 @@ use pebo_cas::forms::tidy::{authors_form, proved_shortest, shortest, with_fewer_
 enum Component {
     /// Free of x.
     Free(Expr),
+    /// Dependent on x by its form; points that show it are looked for where it is refused.
+    Dependent { rate: RateForm, otherwise: Obstacle },
     /// Dependent on x: the term that varies with x, and a witness.
     Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
     /// It could not be decided.
@@ -49,10 +51,10 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
         // Quadratic in momenta: not affine, by points.
-        Component::Bound { .. } if is_implicit(plant) => {
+        Component::Dependent { .. } if is_implicit(plant) => {
             affine::refuted(plant, domain, *rate).map_or(Err(Obstacle::NoWitness), |_| Ok(None))
         }
-        Component::Bound { .. } | Component::Open(_) => gpebo::row(plant, domain, *rate),
+        _ => gpebo::row(plant, domain, *rate),
     };
     let rows: Vec<Result<Option<affine::Row>, Obstacle>> = lie.iter().zip(&components).map(row).collect();
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
@@ -63,6 +65,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
     }
+    let components: Vec<Component> = components.into_iter().map(|component| component.settled(plant, domain)).collect();
     if plant.cascade_class == Some(Class::Pebo) {
         let mut refusals = Vec::new();
         let claim = pencil::refuse(plant, domain, &mut refusals);
@@ -94,7 +97,9 @@ fn refuse(
     for (index, component) in components.iter().enumerate() {
         match (component, row(index)) {
             (Component::Free(_), _) | (_, Ok(Some(_))) => {}
-            (Component::Open(obstacle), _) => found.push(undecided(plant, index, obstacle)),
+            (Component::Open(obstacle) | Component::Dependent { otherwise: obstacle, .. }, _) => {
+                found.push(undecided(plant, index, obstacle));
+            }
             (Component::Bound { .. }, Err(obstacle)) => found.push(undecided(plant, index, &obstacle)),
             (Component::Bound { residual, witness, through }, Ok(None)) => {
                 let refusal = refuted(plant, index, *residual, witness, through, mends[index]);
@@ -121,6 +126,14 @@ impl Component {
             _ => None,
         }
     }
+
+    /// The same with points that show that it depends on x, where there are any.
+    fn settled(self, plant: &Plant, domain: &Domain) -> Self {
+        match self {
+            Self::Dependent { rate, otherwise } => bound(plant, domain, rate).unwrap_or(Self::Open(otherwise)),
+            component => component,
+        }
+    }
 }
 
 /// One component, by the knowledge of the class where there is any.
@@ -137,7 +150,7 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
                 let varying = killing::quadratic(&plant.arena, mechanical, index, &printed.velocities);
                 let rate =
                     RateForm { rate, printed: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
-                bound(plant, domain, rate).unwrap_or(Component::Open(Obstacle::NoWitness))
+                Component::Dependent { rate, otherwise: Obstacle::NoWitness }
             }
             None => component(plant, domain, rate),
         },
@@ -157,7 +170,7 @@ fn component_found(
     let rest: BTreeMap<Symbol, Expr> = plant.x.iter().map(|state| (state.symbol, arena.zero())).collect();
     let field: Vec<Expr> = plant.x.iter().map(|state| arena.derivative(momentum, state.symbol)).collect();
     let is_linear = !field.iter().any(|entry| arena.depends_on(*entry, &hidden))
-        && decide(arena, arena.substitute(momentum, &rest), domain).is_zero();
+        && is_zero(arena, arena.substitute(momentum, &rest), domain);
     if is_linear && killing::is_killing(arena, domain, mechanical, &field) == Ok(true) {
         return Component::Free(proved_shortest(arena, domain, arena.substitute(rate, &rest)));
     }
@@ -190,9 +203,9 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         Ok(tidied) => tidied,
         // An expression without a normal form may still differ at points.
         Err(obstacle) => {
-            return bound(plant, domain, RateForm { rate, printed: rate, varying: None })
-                .or_else(|| free_on_cells(plant, domain, rate))
-                .unwrap_or(Component::Open(obstacle));
+            let rate = RateForm { rate, printed: rate, varying: None };
+            return free_on_cells(plant, domain, rate.rate)
+                .unwrap_or(Component::Dependent { rate, otherwise: obstacle });
         }
     };
     // A number has no other form.
@@ -212,9 +225,8 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
                 // Terms free of x as they are written, then terms that cancel, then the normal form.
                 let forms = as_written(arena, domain, rate, &hidden);
                 let forms = forms.into_iter().chain([shortest(arena, domain, rate), plain]);
-                let equal = |form: &Expr| {
-                    !arena.depends_on(*form, &hidden) && decide(arena, arena.sub(*form, tidied), domain).is_zero()
-                };
+                let equal =
+                    |form: &Expr| !arena.depends_on(*form, &hidden) && is_zero(arena, arena.sub(*form, tidied), domain);
                 let forms: Vec<Expr> = forms.filter(equal).chain([tidied]).collect();
                 let own = authors_form(arena, rate, &forms).unwrap_or(tidied);
                 Component::Free(with_fewer_conditions(arena, domain, own, &forms))
@@ -223,9 +235,9 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
             Answer::NonZero(_) => Component::Open(Obstacle::NoWitness),
         };
     }
-    bound(plant, domain, RateForm { rate, printed: tidied, varying: None })
-        .or_else(|| free_on_cells(plant, domain, rate))
-        .unwrap_or(Component::Open(Obstacle::NoWitness))
+    let dependent = RateForm { rate, printed: tidied, varying: None };
+    free_on_cells(plant, domain, rate)
+        .unwrap_or(Component::Dependent { rate: dependent, otherwise: Obstacle::NoWitness })
 }
 
 /// A rate that is the same function of y and u on all cells that states distinguish, as the rate of `a + sat(a)` may be.
@@ -235,9 +247,12 @@ fn free_on_cells(plant: &Plant, domain: &Domain, rate: Expr) -> Option<Component
     let cells = domain.cells(arena, &[rate], |divider| arena.depends_on(divider, &hidden)).ok()?;
     let cell = &cells.first()?.domain;
     let branch = cell.analytic(arena, &[rate])[0];
+    if branch == rate {
+        return None;
+    }
     let field = Field::on(arena, cell, &[branch]).ok()?;
     let common = field.show(&field.fraction(branch).ok()?);
-    let is_free = !arena.depends_on(common, &hidden) && decide(arena, arena.sub(rate, common), domain).is_zero();
+    let is_free = !arena.depends_on(common, &hidden) && is_zero(arena, arena.sub(rate, common), domain);
     is_free.then(|| Component::Free(proved_shortest(arena, domain, common)))
 }
 
@@ -277,7 +292,7 @@ fn bound(plant: &Plant, domain: &Domain, RateForm { rate, printed, varying }: Ra
 fn mends(plant: &Plant, domain: &Domain, lie: &[Expr], components: &[Component]) -> Vec<Option<Expr>> {
     let component = |((rate, component), phi): ((&Expr, &Component), &Formula)| match component {
         Component::Free(_) => Some(phi.expr),
-        Component::Bound { .. } => mend(plant, domain, *rate, phi.expr),
+        Component::Dependent { .. } | Component::Bound { .. } => mend(plant, domain, *rate, phi.expr),
         Component::Open(_) => None,
     };
     lie.iter().zip(components).zip(&plant.phi).map(component).collect()
@@ -307,7 +322,7 @@ fn mend(plant: &Plant, domain: &Domain, rate: Expr, phi: Expr) -> Option<Expr> {
         mended = arena.sub(mended, arena.mul(coefficient, arena.of_symbol(*output)));
     }
     // A component that no longer holds a state, or is zero by an output's value, would be of no use.
-    let useful = mended != phi && arena.depends_on(mended, &plant.hidden()) && !decide(arena, mended, domain).is_zero();
+    let useful = mended != phi && arena.depends_on(mended, &plant.hidden()) && !is_zero(arena, mended, domain);
     let proved = || matches!(component(plant, domain, arena.directional(mended, &plant.rates())), Component::Free(_));
     (useful && proved()).then_some(mended)
 }

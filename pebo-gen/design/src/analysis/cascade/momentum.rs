@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::plant::Plant;
 use crate::plant::class::Mechanical;
 use crate::plant::matrix::dot;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::{operations_of, proved_shortest};
 use pebo_cas::{Domain, Expr};
 
@@ -29,7 +29,7 @@ fn apart(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let arena = &plant.arena;
     let without: BTreeMap<_, _> = plant.u.iter().map(|input| (*input, arena.zero())).collect();
     let left = arena.substitute(rate, &without);
-    let left = if decide(arena, left, domain).is_zero() { arena.zero() } else { proved_shortest(arena, domain, left) };
+    let left = if is_zero(arena, left, domain) { arena.zero() } else { proved_shortest(arena, domain, left) };
     let slopes: Vec<Expr> = plant.u.iter().map(|input| arena.derivative(rate, *input)).collect();
     let inputs: Vec<Expr> = plant.u.iter().map(|input| arena.of_symbol(*input)).collect();
     arena.add(dot(arena, &slopes, &inputs), left)

@@ -2,7 +2,7 @@
 
 use crate::plant::Plant;
 use crate::source::{Code, Diagnostic};
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::linear::rank::{full_rank, null_vectors};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Symbol};
@@ -134,6 +134,6 @@ fn of_rates(plant: &Plant, domain: &Domain, rows: &[Vec<Expr>]) -> ZeroSet {
 fn moves(plant: &Plant, domain: &Domain, cascade: &Cascade, formulas: &[Expr]) -> bool {
     let arena = &plant.arena;
     let Ok(flow) = Flow::new(plant, domain, cascade) else { return true };
-    let is_constant = |symbol: Symbol| decide(arena, flow.rate(arena, arena.of_symbol(symbol)), domain).is_zero();
+    let is_constant = |symbol: Symbol| is_zero(arena, flow.rate(arena, arena.of_symbol(symbol)), domain);
     arena.symbols_of(formulas).into_iter().any(|symbol| !is_constant(symbol))
 }

@@ -13,7 +13,7 @@ use crate::analysis::design::Cascade;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::{Cell, Side, wall_between};
 use pebo_cas::domain::manifold::Manifold;
-use pebo_cas::domain::zero::{MOST_POINTS, decide};
+use pebo_cas::domain::zero::{MOST_POINTS, is_zero};
 use pebo_cas::graph::enclosure::Point;
 use pebo_cas::linear::rank::{full_rank, full_rank_at, null_vectors};
 use pebo_cas::tower::{Field, Obstacle};
@@ -213,7 +213,7 @@ fn on_wall(plant: &Plant, pair: [&CellRows<'_>; 2], wall: Expr) -> Domain {
     for (fact, relation) in own.chain(other) {
         let is_known = facts.iter().any(|known| known == (fact, relation));
         // The wall is excluded as a wall alone, unless the author excludes it too.
-        if !is_known && !decide(arena, fact, &met).is_zero() {
+        if !is_known && !is_zero(arena, fact, &met) {
             facts.assume(fact, relation);
         }
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::plant::Plant;
 use pebo_cas::domain::Ranges;
 use pebo_cas::domain::bounds::sign_on_box;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Rational, Symbol};
@@ -98,7 +98,7 @@ fn ranges(plant: &Plant, domain: &Domain, expr: Expr) -> Option<Ranges> {
 fn turns(arena: &Arena, domain: &Domain, expr: Expr, symbol: Symbol) -> bool {
     let turn = arena.turn();
     let turned = BTreeMap::from([(symbol, arena.add(arena.of_symbol(symbol), turn))]);
-    decide(arena, arena.sub(arena.substitute(expr, &turned), expr), domain).is_zero()
+    is_zero(arena, arena.sub(arena.substitute(expr, &turned), expr), domain)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::analysis::design::Cascade;
 use crate::plant::Plant;
-use pebo_cas::domain::zero::{decide, refute};
+use pebo_cas::domain::zero::{is_zero, refute};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
@@ -109,7 +109,7 @@ impl Flow {
             let somewhere = || slopes.iter().position(|slope| refute(arena, *slope, domain).is_some());
             let bound = everywhere.or_else(somewhere);
             let Some(index) = bound else {
-                if slopes.iter().all(|slope| decide(arena, *slope, domain).is_zero()) {
+                if slopes.iter().all(|slope| is_zero(arena, *slope, domain)) {
                     continue;
                 }
                 return Err(Obstacle::Unsolved(arena.print(identity.expr)));

@@ -3,7 +3,7 @@
 //! In: directions of the unknowns that are unobservable in every derivative of the regression. Out: the diagnostic, with
 //! the combinations of the states that the outputs show, where these directions move the states by constants.
 
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::linear::rank::null_vectors;
 use pebo_cas::{Domain, Expr, Symbol};
@@ -42,7 +42,7 @@ pub(super) fn never(
     if linear && let Some(left_inverse) = left_inverse {
         let harmless = left_inverse.x.iter().all(|(_, formula)| {
             let slope = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(*formula, *z), *d));
-            decide(arena, arena.sum(slope), domain).is_zero()
+            is_zero(arena, arena.sum(slope), domain)
         });
         diagnostic = diagnostic.note(if harmless {
             "the states do not change along this direction: phi_left cancels it, so x is recoverable although theta is not"

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
@@ -191,7 +191,7 @@ fn hidden_from(
 fn without_zeros(arena: &Arena, domain: &Domain, mut rows: Vec<Vec<Expr>>) -> Vec<Vec<Expr>> {
     if !domain.manifold.is_empty() {
         for entry in rows.iter_mut().flatten() {
-            if decide(arena, *entry, domain).is_zero() {
+            if is_zero(arena, *entry, domain) {
                 *entry = arena.zero();
             }
         }

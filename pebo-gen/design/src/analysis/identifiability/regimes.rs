@@ -90,7 +90,7 @@ pub(super) fn decide(
 /// The domain at the given values of the parameters, if these are between regimes: where walls are zero.
 fn at_given_walls(plant: &Plant, domain: &Domain, walls: &[Expr]) -> Option<Domain> {
     let arena = &plant.arena;
-    let is_zero = |wall: &&Expr| zero::decide(arena, arena.substitute(**wall, &domain.fixed), domain).is_zero();
+    let is_zero = |wall: &&Expr| zero::is_zero(arena, arena.substitute(**wall, &domain.fixed), domain);
     let zero: Vec<Expr> = walls.iter().filter(is_zero).copied().collect();
     (!zero.is_empty()).then(|| Domain { fixed: domain.fixed.clone(), ..on_boundary(plant, domain, &zero) })
 }
@@ -101,7 +101,7 @@ fn on_wall(plant: &Plant, domain: &Domain, wall: Expr, result: &Identifiability,
     let arena = &plant.arena;
     let is_excluded = |constant: Expr| {
         let there = on_boundary(plant, domain, &[wall, constant]);
-        others.iter().any(|other| zero::decide(arena, *other, &there).is_zero())
+        others.iter().any(|other| zero::is_zero(arena, *other, &there))
     };
     let square = |expr: Expr| arena.mul(expr, expr);
     let both = |constant: Expr| arena.add(square(wall), square(constant));

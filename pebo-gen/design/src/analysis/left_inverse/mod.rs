@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use crate::plant::{Formula, Plant};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::domain::injectivity::Collision;
-use pebo_cas::domain::zero::{self, Answer, decide, refute};
+use pebo_cas::domain::zero::{self, Answer, is_zero, refute};
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{self, Domain, Expr, Rational, Relation, Symbol};
 
@@ -150,8 +150,8 @@ fn same_transform(plant: &Plant, domain: &Domain, state: Symbol, formula: Expr, 
     for (fact, relation) in domain.facts.iter().filter(|(fact, _)| arena.symbols_of(&[*fact]).contains(&state)) {
         both.facts.assume(arena.substitute(fact, &other), relation);
     }
-    let same = |phi: &Expr| decide(arena, arena.sub(arena.substitute(*phi, &other), *phi), &both).is_zero();
-    let holds = |identity: &Formula| decide(arena, arena.substitute(identity.expr, &other), &both).is_zero();
+    let same = |phi: &Expr| is_zero(arena, arena.sub(arena.substitute(*phi, &other), *phi), &both);
+    let holds = |identity: &Formula| is_zero(arena, arena.substitute(identity.expr, &other), &both);
     if !plant.transform().iter().all(same) || !plant.identities.iter().all(holds) {
         return None;
     }

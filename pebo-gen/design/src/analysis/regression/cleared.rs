@@ -11,7 +11,7 @@ use super::premises::Premises;
 use super::separation::is_separable;
 use crate::analysis::affine::{self, Row};
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::forms::tidy::with_fewer_conditions;
 use pebo_cas::number::rational::half;
@@ -123,7 +123,7 @@ fn with_other_angles(premises: &Premises<'_>, identity: Expr) -> Option<Expr> {
     let by_angle = |other: &Expr| {
         let ([side, ahead], angle) = angle(arena, *other)?;
         let square = arena.add(arena.mul(side, side), arena.mul(ahead, ahead));
-        let is_distance = |(_, of): &&(Expr, Expr)| decide(arena, arena.sub(*of, square), &everywhere).is_zero();
+        let is_distance = |(_, of): &&(Expr, Expr)| is_zero(arena, arena.sub(*of, square), &everywhere);
         let (distance, _) = roots.iter().find(is_distance)?;
         let along = |function, side| arena.mul(arena.call(function, &[angle]), side);
         let projected = arena.add(along(Function::Cos, ahead), along(Function::Sin, side));
@@ -162,7 +162,7 @@ fn components(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
     let known = solve(arena, domain, &[equation], &[*state]).unwrap_or_default().remove(state).unwrap_or_default();
     let is_the_state = |known: &Expr| {
         let error = arena.sub(arena.substitute(*known, &value), arena.of_symbol(*state));
-        !arena.depends_on(*known, &hidden) && decide(arena, error, &domain.without_equations()).is_zero()
+        !arena.depends_on(*known, &hidden) && is_zero(arena, error, &domain.without_equations())
     };
     let Some(known) = known.into_iter().find(is_the_state) else { return Vec::new() };
     let at = BTreeMap::from([(*state, known)]);
@@ -177,7 +177,7 @@ fn forms(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
     let value = output_value(premises.plant, identity);
     let mut forms = cleared(arena, domain, identity, &premises.plant.hidden());
     forms.retain(|form| match &value {
-        Some(value) => decide(arena, arena.substitute(*form, value), &domain.without_equations()).is_zero(),
+        Some(value) => is_zero(arena, arena.substitute(*form, value), &domain.without_equations()),
         None => premises.vanishes(*form),
     });
     forms

@@ -3,7 +3,7 @@
 use super::premises::Premises;
 use crate::plant::{Formula, Output, Plant};
 use pebo_cas::Expr;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 
 /// `d/dt primitive = rate`, the rate as a function of z, y and u, the primitive of y and perhaps z. Without a primitive
 /// it is a relation that holds at every instant.
@@ -48,7 +48,7 @@ impl Equation {
             return true;
         }
         let (arena, everywhere) = (premises.arena(), premises.domain.without_equations());
-        let is_zero = |expr: Expr| decide(arena, expr, &everywhere).is_zero();
+        let is_zero = |expr: Expr| is_zero(arena, expr, &everywhere);
         is_zero(arena.sub(self.rate, other.rate)) || is_zero(arena.add(self.rate, other.rate))
     }
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::analysis::affine::Row;
 use crate::analysis::design::{Cascade, Class, LeftInverse};
 use crate::plant::Plant;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy;
 use pebo_cas::tower::Field;
 use pebo_cas::{Arena, Domain, Expr, Symbol};
@@ -51,7 +51,7 @@ impl<'a> Premises<'a> {
 
     /// Tests whether an expression is proved to vanish on the domain.
     pub(super) fn vanishes(&self, expr: Expr) -> bool {
-        decide(self.arena(), expr, self.domain).is_zero()
+        is_zero(self.arena(), expr, self.domain)
     }
 
     /// Tests whether two expressions are proved equal on the domain.

@@ -10,7 +10,7 @@ mod trigonometric;
 
 use std::collections::BTreeMap;
 
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy;
 use pebo_cas::tower::Field;
 use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};
@@ -34,7 +34,7 @@ pub(super) fn antiderivative(arena: &Arena, domain: &Domain, expr: Expr, symbol:
         (first, other) => first.or(other)?,
     };
     let difference = arena.sub(arena.derivative(found, symbol), expr);
-    decide(arena, difference, domain).is_zero().then_some(found)
+    is_zero(arena, difference, domain).then_some(found)
 }
 
 struct Rules<'a> {

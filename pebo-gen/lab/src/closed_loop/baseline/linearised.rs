@@ -12,7 +12,7 @@ use crate::closed_loop::scope::Names;
 use crate::closed_loop::truth::Truth;
 use crate::observe::design::program;
 use crate::observe::sizes::LARGEST;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
@@ -74,7 +74,7 @@ impl LinearisedPlant {
         let (rate_slopes, value_slopes) = (slopes(&rates), slopes(&values));
         let (among, domain): (BTreeSet<Symbol>, _) = (states.iter().copied().collect(), plant.domain());
         let is_free = |slope: &Expr| {
-            let bent = |state: &Symbol| !decide(arena, arena.derivative(*slope, *state), &domain).is_zero();
+            let bent = |state: &Symbol| !is_zero(arena, arena.derivative(*slope, *state), &domain);
             !arena.depends_on(*slope, &among) || !states.iter().any(bent)
         };
         let is_affine = rate_slopes.iter().chain(&value_slopes).all(is_free);

@@ -9,7 +9,7 @@ use crate::analysis::design::{Still, TrajectoryCondition};
 use crate::analysis::identifiability::flow::{Flow, only_signal};
 use pebo_cas::domain::cells::Cell;
 use pebo_cas::domain::manifold::Manifold;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Domain, Expr, Symbol};
@@ -96,7 +96,7 @@ impl ObservabilityProblem<'_> {
                     let flow = Flow::along(plant, domain, cascade, held)?;
                     let moves = |expr: Expr| {
                         let rate = domain.analytic(arena, &[flow.rate(arena, expr)])[0];
-                        (!decide(arena, rate, domain).is_zero()).then_some(rate)
+                        (!is_zero(arena, rate, domain)).then_some(rate)
                     };
                     // Where a function of one signal is zero at all times the signal is constant.
                     let reduced = domain.manifold.reduced(arena).into_iter();

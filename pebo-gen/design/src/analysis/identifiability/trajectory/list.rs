@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Still, TrajectoryCondition};
 use pebo_cas::domain::cells::Side;
-use pebo_cas::domain::zero::decide;
+use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::operations_of;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
@@ -173,7 +173,7 @@ impl TrajectoryCondition {
             _ => false,
         };
         is_still
-            && self.zeros.iter().all(|zero| decide(arena, *zero, domain).is_zero())
+            && self.zeros.iter().all(|zero| is_zero(arena, *zero, domain))
             && self
                 .sides
                 .iter()
