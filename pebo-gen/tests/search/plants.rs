@@ -221,6 +221,18 @@ const CASES: &[Case] = &[
         class: Class::Gpebo,
         most: 3,
     },
+    Case {
+        from: "attitude matrix from two vectors and a gyroscope: identities that depend on one another",
+        lines: "parameters: {g: 9.81, b: 0.6, d: 0.8}\nx: [r11, r12, r13, r21, r22, r23, r31, r32, r33]\n\
+                y: [a1, a2, a3, m1, m2, m3]\nu: [w1, w2, w3]\nf_x: {r11: r12*w3 - r13*w2, r12: r13*w1 - r11*w3, \
+                r13: r11*w2 - r12*w1, r21: r22*w3 - r23*w2, r22: r23*w1 - r21*w3, r23: r21*w2 - r22*w1, \
+                r31: r32*w3 - r33*w2, r32: r33*w1 - r31*w3, r33: r31*w2 - r32*w1}\ng_y: {a1: g*r31, a2: g*r32, \
+                a3: g*r33, m1: b*r11 + d*r31, m2: b*r12 + d*r32, m3: b*r13 + d*r33}\nidentities: \
+                [r11 - (r22*r33 - r23*r32), r12 - (r23*r31 - r21*r33), r13 - (r21*r32 - r22*r31), \
+                r21 - (r32*r13 - r33*r12), r22 - (r33*r11 - r31*r13), r23 - (r31*r12 - r32*r11)]",
+        class: Class::Gpebo,
+        most: 9,
+    },
 ];
 
 /// A polynomial that no formula shows divides its own rate.
