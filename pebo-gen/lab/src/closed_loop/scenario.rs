@@ -221,9 +221,6 @@ impl Resolution<'_> {
         }
         let numbers = names.numbers();
         let timing = Timing::resolve(simulation, overrides, span, problems);
-        let design =
-            Design::resolve(&names.request(), derivation, &numbers, &Shown::of_period(overrides.step), problems);
-
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
         let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
@@ -235,6 +232,9 @@ impl Resolution<'_> {
         let truth = Truth::resolve(&names, problems);
         let start = start(&names, &truth, &baselines, problems);
         let rates = rates(&names, &truth, &baselines, problems);
+        // After the start, of which it takes its numbers where none are written.
+        let shown = Shown::of_period(overrides.step);
+        let design = Design::resolve(&names.request(), derivation, &numbers, &shown, problems);
         let (timing, mut design, mut rates) = (timing?, design?, rates?);
         problems.keep(admit_delays(names.model, &timing))?;
 

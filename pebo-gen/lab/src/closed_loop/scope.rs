@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
 use pebo_design::plant::{Plant, Scope, lower};
-use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
+use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
 use super::layout::{baseline_state, last_sample, time};
 use crate::observe::request::Request;
@@ -137,7 +137,7 @@ impl<'a> Names<'a> {
         scope
     }
 
-    /// The formula of each name; a name without one is reported.
+    /// The formula of each name; those without one are reported.
     pub(crate) fn entries(
         &self,
         scope: &Scope,
@@ -146,20 +146,22 @@ impl<'a> Names<'a> {
         problems: &mut Diagnostics,
     ) -> Vec<Expr> {
         let arena = &self.plant.arena;
-        let mut found = Vec::new();
+        let (mut found, mut missing) = (Vec::new(), Vec::new());
         for symbol in wanted {
             let name = arena.name(*symbol);
-            let entry = written.iter().find(|entry| entry.name.value == name);
-            let lowered = match entry {
-                Some(entry) => lower(arena, scope, &entry.value),
-                None => Err(Diagnostic::error(
-                    Code::SimulationIncomplete,
-                    self.section(),
-                    format!("`{section}` has no entry for `{name}`"),
-                )
-                .help(format!("add `{name}: 0`, or its formula, under `{section}`"))),
-            };
-            found.extend(problems.keep(lowered));
+            match written.iter().find(|entry| entry.name.value == name) {
+                Some(entry) => found.extend(problems.keep(lower(arena, scope, &entry.value))),
+                None => missing.push(name),
+            }
+        }
+        if !missing.is_empty() {
+            let message = format!("`{section}` has no entry for {}", listed(missing.iter().map(String::as_str)));
+            let lines = missing.iter().map(|name| format!("{name}: 0")).collect::<Vec<_>>().join(", ");
+            let formula = if missing.len() == 1 { "its formula" } else { "their formulas" };
+            problems.push(
+                Diagnostic::error(Code::SimulationIncomplete, self.section(), message)
+                    .help(format!("add `{lines}`, or {formula}, under `{section}`")),
+            );
         }
         found
     }

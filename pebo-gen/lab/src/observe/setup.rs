@@ -152,12 +152,11 @@ impl Settings {
         shown: &Shown,
         problems: &mut Diagnostics,
     ) -> Option<Self> {
-        let before = problems.has_errors();
         let Some(derived) = DerivedSettings::of(request.model, request.plant, derivation, shown, problems) else {
-            if before || !problems.has_errors() {
+            if !problems.has_errors() {
                 let message = format!("{} needs the observer's numbers", request.who);
                 problems.push(Diagnostic::error(Code::SimulationIncomplete, request.section, message).help(
-                    "add `observer: {sensors: .., start: .., disturbance: ..}` with standard deviations:                      docs/estimators.md has examples",
+                    "add `observer: {sensors: .., start: .., disturbance: ..}` with standard deviations: docs/estimators.md has examples",
                 ));
             }
             return None;

@@ -23,11 +23,45 @@ impl ExpectedErrors {
         self.instants.push((t, errors));
     }
 
-    /// The root mean square of an estimate's predicted errors from an instant on.
+    /// The root mean square of an estimate's predicted errors from an instant on, in time since the beginning. An
+    /// estimate that is right from the beginning on is so by its start: then without the first ones, if these are
+    /// [`UNKNOWN`] times as large as those in the second half, as nothing was known of it.
     pub(crate) fn since(&self, t: f64, estimate: usize) -> Option<f64> {
-        let later = || self.instants.iter().filter(|(at, _)| *at >= t).filter_map(|(_, errors)| errors.get(estimate));
-        let count = crate::timing::real(u64::try_from(later().count()).ok()?);
-        let squares: f64 = later().map(|error| error * error).sum();
-        (count > 0.0).then(|| (squares / count).sqrt())
+        let later = self.instants.iter().filter(|(at, _)| *at >= t);
+        let later: Vec<f64> = later.filter_map(|(_, errors)| errors.get(estimate).copied()).collect();
+        let in_the_end = root_mean_square(&later[later.len() / 2..])?;
+        let known = later.iter().position(|error| t > 0.0 || *error <= UNKNOWN * in_the_end);
+        root_mean_square(&later[known.unwrap_or(0)..])
+    }
+}
+
+/// While noise averages out, an error falls with the root of time: to a tenth of it in a hundred times the time, of which
+/// what is left out is a share too small to matter.
+const UNKNOWN: f64 = 10.0;
+
+fn root_mean_square(values: &[f64]) -> Option<f64> {
+    let count = crate::timing::real(u64::try_from(values.len()).ok()?);
+    (count > 0.0).then(|| (values.iter().map(|value| value * value).sum::<f64>() / count).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_known_yet_of_an_estimate_that_starts_right_is_left_out() {
+        let mut expected = ExpectedErrors::default();
+        for (t, error) in [(0.0, 10.0), (1.0, 0.05), (2.0, 0.01), (3.0, 0.01), (4.0, 1e-6), (5.0, 1e-6)] {
+            expected.add(t, Some(vec![error]));
+        }
+        let is = |t: f64, errors: &[f64]| {
+            let mean = root_mean_square(errors).expect("errors");
+            assert!((expected.since(t, 0).expect("later instants") - mean).abs() < 1e-15, "{t}");
+        };
+        is(0.0, &[0.05, 0.01, 0.01, 1e-6, 1e-6]);
+        // Of one that settled later nothing is left out.
+        is(3.0, &[0.01, 1e-6, 1e-6]);
+        is(4.0, &[1e-6, 1e-6]);
+        assert_eq!(expected.since(6.0, 0), None);
     }
 }
