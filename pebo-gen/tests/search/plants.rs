@@ -233,6 +233,13 @@ const CASES: &[Case] = &[
         class: Class::Gpebo,
         most: 9,
     },
+    Case {
+        from: "a vehicle on a track and the distance of a mast beside it, with an unknown drag",
+        lines: "x: [a, b, c]\ny: [r, s]\nu: [v]\nf_x: {a: b, b: v - c/10, c: 0}\n\
+                g_y: {r: 'sqrt((a - 3)^2 + 4)', s: c*a}",
+        class: Class::Gpebo,
+        most: 9,
+    },
 ];
 
 /// A polynomial that no formula shows divides its own rate.

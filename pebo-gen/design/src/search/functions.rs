@@ -8,6 +8,7 @@ use pebo_cas::solve::cleared;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Function, Node, Rational, Relation, Symbol};
 
+use super::closure::products::terms;
 use super::integral::logarithm::logarithm;
 use super::problem::Problem;
 use super::sample::independent;
@@ -207,7 +208,10 @@ pub(super) fn products(
 }
 
 /// An identity cleared of the roots and angles around states: of `r - sqrt(p^2 + s^2)` the functions are not separable,
-/// of its square they are.
+/// of its square they are. The first form that is a combination of products, as later ones may hold for one sign alone:
+/// `r^2 - p^2 - 1` leads to `p - sqrt(r^2 - 1)`.
 pub(super) fn without_roots(problem: &Problem<'_>, identity: Expr) -> Expr {
-    cleared(problem.arena, &problem.domain, identity, &problem.hidden).pop().unwrap_or(identity)
+    let forms = cleared(problem.arena, &problem.domain, identity, &problem.hidden);
+    let is_of_products = |form: &&Expr| matches!(terms(problem, **form, &problem.hidden), Ok(Some(_)));
+    forms.iter().find(is_of_products).or(forms.last()).copied().unwrap_or(identity)
 }

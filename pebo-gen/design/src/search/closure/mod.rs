@@ -14,7 +14,7 @@ pub(super) mod coordinates;
 pub(crate) mod darboux;
 pub(super) mod extended;
 pub(crate) mod observable;
-mod products;
+pub(super) mod products;
 
 use std::collections::{BTreeMap, BTreeSet};
 
