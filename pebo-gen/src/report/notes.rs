@@ -28,10 +28,13 @@ pub(crate) fn transform(plant: &Plant) -> Vec<String> {
     let arena = &plant.arena;
     if let TransformOrigin::Lifted { written } = plant.origin {
         let (first, last) = (written + 1, plant.phi.len());
-        let added =
-            if first == last { format!("z{first} is a product") } else { format!("z{first} to z{last} are products") };
+        let added = match last - written {
+            1 => format!("z{first} is a function"),
+            2 => format!("z{first} and z{last} are functions"),
+            _ => format!("z{first} to z{last} are functions"),
+        };
         return vec![format!(
-            "{added} of the components of phi: the outputs are not affine in phi as it is written, and with products they are"
+            "{added} of the components as they are written: in these alone the outputs are not affine, in all they are"
         )];
     }
     let names = |symbols: BTreeSet<Symbol>| {
