@@ -70,7 +70,7 @@ struct CostReport {
 struct TransformReport {
     origin: &'static str,
     z: Vec<String>,
-    /// The number of components after the author's own, which are products of these.
+    /// The number of components after the author's own, which are functions of these.
     #[serde(skip_serializing_if = "Option::is_none")]
     lifted: Option<usize>,
     /// The transform to which it was preferred, where that takes the noise of samples or needs conditions.

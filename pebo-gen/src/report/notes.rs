@@ -23,7 +23,7 @@ pub(crate) fn meaning(derivation: &Derivation) -> &'static str {
     }
 }
 
-/// Notes on a transform that was found, or lifted: the one to which it was preferred, and the products in it.
+/// Notes on a transform that was found, or lifted: the one to which it was preferred, and the functions in it.
 pub(crate) fn transform(plant: &Plant) -> Vec<String> {
     let arena = &plant.arena;
     if let TransformOrigin::Lifted { written } = plant.origin {

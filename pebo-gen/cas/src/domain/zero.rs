@@ -69,14 +69,18 @@ pub fn is_zero(arena: &Arena, expr: Expr, domain: &Domain) -> bool {
         Answer::NonZero(_) => false,
         Answer::Open(_) => {
             !arena.dividers(&[expr]).is_empty()
-                && domain.cells(arena, &[expr], |_| true).is_ok_and(|cells| cells.iter().all(on_cell))
+                && domain
+                    .cells(arena, &[expr], |_| true)
+                    .is_ok_and(|cells| !cells.is_empty() && cells.iter().all(on_cell))
         }
     }
 }
 
 /// The answer on the cells of the domain; none if these are not found, or one of them has no answer.
 fn on_cells(arena: &Arena, expr: Expr, domain: &Domain) -> Option<Answer> {
-    for cell in domain.cells(arena, &[expr], |_| true).ok()? {
+    // Over no cell at all everything would be zero.
+    let cells = domain.cells(arena, &[expr], |_| true).ok().filter(|cells| !cells.is_empty())?;
+    for cell in cells {
         let branch = cell.domain.analytic(arena, &[expr])[0];
         match decide_as_written(arena, branch, &cell.domain) {
             Answer::Zero => {}

@@ -90,7 +90,7 @@ pub struct Plant {
 pub enum TransformOrigin {
     /// The author gave it, or nobody has yet.
     Given,
-    /// The author gave the first components; the others are products of them, in which the outputs are affine.
+    /// The author gave the first components; the others are functions of them, with which the outputs are affine.
     Lifted {
         /// The number of components that the author gave.
         written: usize,
@@ -225,8 +225,8 @@ impl Plant {
 
     /// The same plant with further components of the transform, at the place of the author's last one.
     #[must_use]
-    pub fn lifted(&self, products: &[Expr]) -> Self {
-        let mut plant = self.with_transform(&[&self.transform(), products].concat());
+    pub fn lifted(&self, functions: &[Expr]) -> Self {
+        let mut plant = self.with_transform(&[&self.transform(), functions].concat());
         let last = self.phi.last().map_or(Span::NOWHERE, |component| component.span);
         for (index, component) in plant.phi.iter_mut().enumerate() {
             component.span = self.phi.get(index).map_or(last, |written| written.span);

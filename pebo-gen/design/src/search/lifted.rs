@@ -1,4 +1,4 @@
-//! A transform with products of its components.
+//! A transform with functions of its components.
 //!
 //! In: a transform whose generalised cascade and left inverse are proved, in which the outputs are not affine. Out: its
 //! components, followed by the functions of them in the outputs, in the rates of these, and so on; accepted with all
@@ -15,7 +15,7 @@ use pebo_cas::tower::Obstacle;
 
 /// The accepted transform that begins with the components of this plant's.
 pub(super) fn lifted(problem: &Problem<'_>, plant: &Plant, derivation: &Derivation) -> Option<Candidate> {
-    // Products of components that do not determine the states are another transform, not this one.
+    // Functions of components that do not determine the states are another transform, not this one.
     if derivation.class != Class::Gpebo || derivation.left_inverse.verdict != Verdict::Proved {
         return None;
     }

@@ -123,7 +123,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     Search { verdict, candidates, symmetry, declared, bound, affine, generalised, tried }
 }
 
-/// The author's transform with products of its components, where it has a generalised cascade and a left inverse but
+/// The author's transform with functions of its components, where it has a generalised cascade and a left inverse but
 /// the outputs are not affine in it; none where that is not accepted.
 #[must_use]
 pub fn lifted(plant: &Plant, derivation: &Derivation) -> Option<Candidate> {

@@ -30,12 +30,18 @@ use pebo_cas::forms::tidy::{authors_form, proved_shortest, shortest, with_fewer_
 enum Component {
     /// Free of x.
     Free(Expr),
-    /// Dependent on x by its form; points that show it are looked for where it is refused.
-    Dependent { rate: RateForm, otherwise: Obstacle },
-    /// Dependent on x: the term that varies with x, and a witness.
-    Bound { residual: Expr, witness: Witness, through: Vec<Symbol> },
+    /// Dependent on x by its form, with the obstacle where no points show it; these are looked for where it is refused.
+    Dependent(RateForm, Obstacle),
     /// It could not be decided.
     Open(Obstacle),
+}
+
+/// The dependence of a rate on x, as two points show it.
+struct Dependence {
+    /// The term that varies with x.
+    residual: Expr,
+    witness: Witness,
+    through: Vec<Symbol>,
 }
 
 /// Proves or refutes the cascade: the plain one, else, unless only that is wanted, the generalised one.
@@ -51,7 +57,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         Component::Free(h) => Ok(Some(gpebo::known(plant, *h))),
         Component::Open(Obstacle::NoPoint) => Err(Obstacle::NoPoint),
         // Quadratic in momenta: not affine, by points.
-        Component::Dependent { .. } if is_implicit(plant) => {
+        Component::Dependent(..) if is_implicit(plant) => {
             affine::refuted(plant, domain, *rate).map_or(Err(Obstacle::NoWitness), |_| Ok(None))
         }
         _ => gpebo::row(plant, domain, *rate),
@@ -65,7 +71,6 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
         let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
     }
-    let components: Vec<Component> = components.into_iter().map(|component| component.settled(plant, domain)).collect();
     if plant.cascade_class == Some(Class::Pebo) {
         let mut refusals = Vec::new();
         let claim = pencil::refuse(plant, domain, &mut refusals);
@@ -97,17 +102,18 @@ fn refuse(
     for (index, component) in components.iter().enumerate() {
         match (component, row(index)) {
             (Component::Free(_), _) | (_, Ok(Some(_))) => {}
-            (Component::Open(obstacle) | Component::Dependent { otherwise: obstacle, .. }, _) => {
-                found.push(undecided(plant, index, obstacle));
-            }
-            (Component::Bound { .. }, Err(obstacle)) => found.push(undecided(plant, index, &obstacle)),
-            (Component::Bound { residual, witness, through }, Ok(None)) => {
-                let refusal = refuted(plant, index, *residual, witness, through, mends[index]);
-                let refusal = blame::cascade(plant, domain, index, refusal);
-                found.push(structure(plant, domain, index, refusal));
-                residuals[index] = *residual;
-                first.get_or_insert_with(|| witness.clone());
-            }
+            (Component::Open(obstacle), _) => found.push(undecided(plant, index, obstacle)),
+            (Component::Dependent(rate, otherwise), row) => match (dependence(plant, domain, rate), row) {
+                (None, _) => found.push(undecided(plant, index, otherwise)),
+                (Some(_), Err(obstacle)) => found.push(undecided(plant, index, &obstacle)),
+                (Some(shown), _) => {
+                    let refusal = refuted(plant, index, &shown, mends[index]);
+                    let refusal = blame::cascade(plant, domain, index, refusal);
+                    found.push(structure(plant, domain, index, refusal));
+                    residuals[index] = shown.residual;
+                    first.get_or_insert(shown.witness);
+                }
+            },
         }
     }
     match first {
@@ -126,14 +132,6 @@ impl Component {
             _ => None,
         }
     }
-
-    /// The same with points that show that it depends on x, where there are any.
-    fn settled(self, plant: &Plant, domain: &Domain) -> Self {
-        match self {
-            Self::Dependent { rate, otherwise } => bound(plant, domain, rate).unwrap_or(Self::Open(otherwise)),
-            component => component,
-        }
-    }
 }
 
 /// One component, by the knowledge of the class where there is any.
@@ -150,7 +148,7 @@ fn component_of(plant: &Plant, domain: &Domain, index: usize, rate: Expr) -> Com
                 let varying = killing::quadratic(&plant.arena, mechanical, index, &printed.velocities);
                 let rate =
                     RateForm { rate, printed: plant.arena.add(mechanical.h[index], varying), varying: Some(varying) };
-                Component::Dependent { rate, otherwise: Obstacle::NoWitness }
+                Component::Dependent(rate, Obstacle::NoWitness)
             }
             None => component(plant, domain, rate),
         },
@@ -204,8 +202,7 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         // An expression without a normal form may still differ at points.
         Err(obstacle) => {
             let rate = RateForm { rate, printed: rate, varying: None };
-            return free_on_cells(plant, domain, rate.rate)
-                .unwrap_or(Component::Dependent { rate, otherwise: obstacle });
+            return free_on_cells(plant, domain, rate.rate).unwrap_or(Component::Dependent(rate, obstacle));
         }
     };
     // A number has no other form.
@@ -236,8 +233,7 @@ fn component(plant: &Plant, domain: &Domain, rate: Expr) -> Component {
         };
     }
     let dependent = RateForm { rate, printed: tidied, varying: None };
-    free_on_cells(plant, domain, rate)
-        .unwrap_or(Component::Dependent { rate: dependent, otherwise: Obstacle::NoWitness })
+    free_on_cells(plant, domain, rate).unwrap_or(Component::Dependent(dependent, Obstacle::NoWitness))
 }
 
 /// A rate that is the same function of y and u on all cells that states distinguish, as the rate of `a + sat(a)` may be.
@@ -267,8 +263,9 @@ struct RateForm {
 /// The dependence on x, with two points of the domain that show it: the same y, u and parameters, another value.
 ///
 /// If the varying term of the printed form is unknown, it is the difference to its value at the second point.
-fn bound(plant: &Plant, domain: &Domain, RateForm { rate, printed, varying }: RateForm) -> Option<Component> {
+fn dependence(plant: &Plant, domain: &Domain, form: &RateForm) -> Option<Dependence> {
     let arena = &plant.arena;
+    let RateForm { rate, printed, varying } = *form;
     let hidden = plant.hidden();
     let points = contrast(arena, rate, &[arena.one()], &hidden, domain)?;
     let ([_, reference], [here, there]) = (points.points.as_slice(), points.values.as_slice()) else { return None };
@@ -285,14 +282,14 @@ fn bound(plant: &Plant, domain: &Domain, RateForm { rate, printed, varying }: Ra
         bounds: (difference.lo(), difference.hi()),
         compared: Some(compared),
     };
-    Some(Component::Bound { residual, witness, through })
+    Some(Dependence { residual, witness, through })
 }
 
 /// The components that are free of x, and the others mended, where that can be.
 fn mends(plant: &Plant, domain: &Domain, lie: &[Expr], components: &[Component]) -> Vec<Option<Expr>> {
     let component = |((rate, component), phi): ((&Expr, &Component), &Formula)| match component {
         Component::Free(_) => Some(phi.expr),
-        Component::Dependent { .. } | Component::Bound { .. } => mend(plant, domain, *rate, phi.expr),
+        Component::Dependent(..) => mend(plant, domain, *rate, phi.expr),
         Component::Open(_) => None,
     };
     lie.iter().zip(components).zip(&plant.phi).map(component).collect()
@@ -333,14 +330,12 @@ const LONGEST: usize = 60;
 fn refuted(
     plant: &Plant,
     index: usize,
-    residual: Expr,
-    witness: &Witness,
-    through: &[Symbol],
+    Dependence { residual, witness, through }: &Dependence,
     mend: Option<Expr>,
 ) -> Diagnostic {
     let arena = &plant.arena;
     let names: Vec<String> = through.iter().map(|s| arena.name(*s)).collect();
-    let printed = arena.print(residual);
+    let printed = arena.print(*residual);
     // A long label is not repeated.
     let term = if printed.len() <= LONGEST { format!("`{printed}`") } else { "this term".to_owned() };
     let component = index + 1;
