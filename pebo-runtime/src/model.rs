@@ -39,6 +39,7 @@ pub enum Regression {
 /// | [`theta`](Self::theta) | `theta` from the estimate of `eta` | once for each sample |
 /// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to four times |
 /// | [`recover`](Self::recover) | `phi_left` | once for each sample |
+/// | [`transform`](Self::transform) | `phi`, if its components depend on one another | up to four times |
 ///
 /// [`h`](Self::h), [`phi_0`](Self::phi_0), [`phi_1`](Self::phi_1), [`phi_left`](Self::phi_left) and the others give one
 /// of these values from the output itself.
@@ -137,6 +138,38 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         None
     }
 
+    /// True if [`transform`](Self::transform) is there.
+    const RELATED: bool = false;
+
+    /// The transform `phi` of the recovered states at this sample, where its components depend on one another whatever
+    /// the outputs and parameters are, as `x1`, `x2` and `x1 x2`: the estimate that goes out is then the state whose
+    /// transform is nearest, see [`Observer`](crate::Observer). Nothing else asks for it.
+    fn transform(
+        &self,
+        _x: &SVector<Self::Scalar, NX>,
+        _terms: &Self::Terms,
+    ) -> Option<Functions<Self::Scalar, NZ, NX>> {
+        None
+    }
+
+    /// Parameters of the range of the transform near these coordinates: the recovered states, then zeros.
+    fn parameters(&self, z: &SVector<Self::Scalar, NZ>, terms: &Self::Terms) -> SVector<Self::Scalar, NZ> {
+        let states = self.recover_unbounded(z, terms);
+        SVector::from_fn(|i, _| states.get(i).copied().unwrap_or_else(nalgebra::zero))
+    }
+
+    /// The coordinates at such parameters.
+    fn range(
+        &self,
+        parameters: &SVector<Self::Scalar, NZ>,
+        terms: &Self::Terms,
+    ) -> Option<Functions<Self::Scalar, NZ, NZ>> {
+        let of_states = self.transform(&SVector::from_fn(|i, _| parameters[i]), terms)?;
+        let mut slopes = SMatrix::<Self::Scalar, NZ, NZ>::zeros();
+        of_states.slopes.column_iter().enumerate().for_each(|(j, column)| slopes.set_column(j, &column));
+        Some(Functions { values: of_states.values, slopes })
+    }
+
     /// The left inverse `phi_left`: `x` such that `z = phi(x, y)`. It may have no value at an estimate of `z` beyond
     /// the range of `phi`: an observer then refuses the step with [`Fault::Estimate`](crate::Fault::Estimate) and
     /// changes nothing.
@@ -200,12 +233,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     }
 }
 
-/// A function of `theta` at one value, with its derivatives.
+/// A function at one value of its argument, with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Functions<S: Real, const NE: usize, const NZ: usize> {
     /// Its components.
     pub values: SVector<S, NE>,
-    /// Their derivatives: a row for each, a column for each component of `theta`.
+    /// Their derivatives: a row for each, a column for each component of the argument.
     pub slopes: SMatrix<S, NE, NZ>,
 }
 

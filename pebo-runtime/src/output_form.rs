@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::dense::{applied, product};
 use crate::numeric::sum::all_finite;
-use crate::{Extension, Fault, Flow, Fundamental, Model, Real, Rebase, Regression, Sides};
+use crate::{Extension, Fault, Flow, Functions, Fundamental, Model, Real, Rebase, Regression, Sides};
 
 /// The output form of a model with a dynamic regression.
 ///
@@ -130,6 +130,7 @@ where
     type Terms = Measured<M::Terms, M::Scalar, NY>;
     const REGRESSION: Regression = Regression::Static;
     const LINEARISED: bool = true;
+    const RELATED: bool = M::RELATED;
 
     fn periods(&self) -> SVector<M::Scalar, NY> {
         self.model.periods()
@@ -216,22 +217,36 @@ where
         }))
     }
 
+    /// Those of the model within, after the outputs.
+    fn parameters(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NW> {
+        let rates = NW - NZ;
+        let inner = self.model.parameters(&SVector::from_fn(|i, _| z[rates + i]), &self.terms_at(z, measured));
+        SVector::from_fn(|i, _| if i < rates { z[i] } else { inner[i - rates] })
+    }
+
+    fn range(
+        &self,
+        parameters: &SVector<M::Scalar, NW>,
+        measured: &Self::Terms,
+    ) -> Option<Functions<M::Scalar, NW, NW>> {
+        let rates = NW - NZ;
+        let terms = self.terms_at(parameters, measured);
+        let inner = self.model.range(&SVector::from_fn(|i, _| parameters[rates + i]), &terms)?;
+        let values = SVector::from_fn(|i, _| if i < rates { parameters[i] } else { inner.values[i - rates] });
+        let slopes = SMatrix::from_fn(|i, j| match (i.checked_sub(rates), j.checked_sub(rates)) {
+            (Some(i), Some(j)) => inner.slopes[(i, j)],
+            _ if i == j => nalgebra::one(),
+            _ => nalgebra::zero(),
+        });
+        Some(Functions { values, slopes })
+    }
+
     fn recover(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
-        let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
-        match &self.expected {
-            Some(expected) => self.model.recover(&inner, &self.model.terms(&expected.of(z, &measured.y, NW - NZ))),
-            None => self.model.recover(&inner, &measured.terms),
-        }
+        self.model.recover(&SVector::from_fn(|i, _| z[NW - NZ + i]), &self.terms_at(z, measured))
     }
 
     fn recover_unbounded(&self, z: &SVector<M::Scalar, NW>, measured: &Self::Terms) -> SVector<M::Scalar, NX> {
-        let inner = SVector::from_fn(|i, _| z[NW - NZ + i]);
-        match &self.expected {
-            Some(expected) => {
-                self.model.recover_unbounded(&inner, &self.model.terms(&expected.of(z, &measured.y, NW - NZ)))
-            }
-            None => self.model.recover_unbounded(&inner, &measured.terms),
-        }
+        self.model.recover_unbounded(&SVector::from_fn(|i, _| z[NW - NZ + i]), &self.terms_at(z, measured))
     }
 }
 
@@ -243,6 +258,22 @@ where
 }
 
 impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
+    /// The terms of the outputs that an estimate is made of.
+    #[inline]
+    fn terms_at<const NX: usize, const NY: usize, const NU: usize, const NW: usize>(
+        &self,
+        z: &SVector<S, NW>,
+        measured: &Measured<M::Terms, S, NY>,
+    ) -> M::Terms
+    where
+        M: Rebase<NX, NY, NU, NZ, NR, Scalar = S>,
+    {
+        match &self.expected {
+            Some(expected) => self.model.terms(&expected.of(z, &measured.y, NW - NZ)),
+            None => measured.terms,
+        }
+    }
+
     /// Makes the flow that of these outputs, linearised at this estimate.
     #[inline]
     fn linearise<const NX: usize, const NY: usize, const NU: usize, const NW: usize>(

@@ -49,6 +49,7 @@ where
     const REGRESSION: Regression = M::REGRESSION;
     const INSTANTS: usize = M::INSTANTS;
     const LINEARISED: bool = M::LINEARISED;
+    const RELATED: bool = M::RELATED;
 
     fn periods(&self) -> SVector<S, NY> {
         self.model.periods()
@@ -88,6 +89,18 @@ where
 
     fn functions(&self, theta: &SVector<S, NZ>) -> Option<Functions<S, NE, NZ>> {
         self.model.functions(theta)
+    }
+
+    fn transform(&self, x: &SVector<S, NX>, terms: &M::Terms) -> Option<Functions<S, NZ, NX>> {
+        self.model.transform(x, terms)
+    }
+
+    fn parameters(&self, z: &SVector<S, NZ>, terms: &M::Terms) -> SVector<S, NZ> {
+        self.model.parameters(z, terms)
+    }
+
+    fn range(&self, parameters: &SVector<S, NZ>, terms: &M::Terms) -> Option<Functions<S, NZ, NZ>> {
+        self.model.range(parameters, terms)
     }
 
     fn begin(&self, extension: &M::Extension, terms: &M::Terms) -> M::Extension {

@@ -46,6 +46,7 @@ const CASES: &[Case] = &[
              simulation: {duration: 4, step: 1e-4, initial: {p: 0.5, q: 1}, control: {tau: 0}}\nphi: [p]",
         )],
     },
+    case("range_only", 20.0),
     case("robotic_leg", 0.9),
     case("sepic", 0.3),
     case("two_mass_drive", 0.8),

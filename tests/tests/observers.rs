@@ -49,5 +49,7 @@ follow! {
     late_outputs: late_cart_f64::LateCart, "models/late_cart.yaml", 20.0, ["p", "s"], ["a"], ["v_hat", "b_hat"];
     noise_in_the_factor: bearing_only_f64::BearingOnly, "../models/bearing_only.yaml", 400.0, ["beta"], ["wx", "wy"],
         ["rx_hat", "ry_hat", "vx_hat", "vy_hat"];
+    components_that_depend_on_one_another: range_only_f64::RangeOnly, "../models/range_only.yaml", 60.0, ["r"],
+        ["wx", "wy"], ["px_hat", "py_hat", "cx_hat", "cy_hat"];
     rates_at_expected_outputs: enzyme_f64::Enzyme, "models/enzyme.yaml", 10.0, ["S", "P"], ["v"], ["C_hat"];
 }

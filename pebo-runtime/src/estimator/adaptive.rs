@@ -160,8 +160,8 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for Adaptiv
         Estimator::<S, NR, NE>::shift(&mut self.squares, shift);
     }
 
-    fn constrain(&mut self, onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {
-        Estimator::<S, NR, NE>::constrain(&mut self.squares, onto);
+    fn information(&self) -> Option<&Information<S, NE>> {
+        Estimator::<S, NR, NE>::information(&self.squares)
     }
 
     fn turn(&mut self, turn: &Turn<S, NE>) {

@@ -77,8 +77,8 @@ where
         self.moved.add(shift);
     }
 
-    fn constrain(&mut self, onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {
-        self.estimator.constrain(onto);
+    fn information(&self) -> Option<&Information<S, NE>> {
+        self.estimator.information()
     }
 
     fn turn(&mut self, turn: &Turn<S, NE>) {

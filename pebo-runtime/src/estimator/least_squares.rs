@@ -170,10 +170,8 @@ impl<S: Real, const NR: usize, const NE: usize> Estimator<S, NR, NE> for LeastSq
         self.theta.add(shift);
     }
 
-    fn constrain(&mut self, onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {
-        if let Some(constrained) = onto(self.theta.value(), &self.information) {
-            self.theta = Sum::new(constrained);
-        }
+    fn information(&self) -> Option<&Information<S, NE>> {
+        Some(&self.information)
     }
 
     fn turn(&mut self, turn: &Turn<S, NE>) {

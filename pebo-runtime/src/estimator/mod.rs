@@ -65,9 +65,10 @@ pub trait Estimator<S: Real, const NR: usize, const NE: usize>: Clone {
     /// apply to the new unknown.
     fn turn(&mut self, turn: &Turn<S, NE>);
 
-    /// Takes in place of the estimate the one that a constraint on the unknown leaves: `onto` gives it, from the
-    /// estimate and its information. An estimator that keeps no information matrix does nothing.
-    fn constrain(&mut self, _onto: impl FnOnce(&SVector<S, NE>, &Information<S, NE>) -> Option<SVector<S, NE>>) {}
+    /// The information of the estimate, of an estimator that keeps it.
+    fn information(&self) -> Option<&Information<S, NE>> {
+        None
+    }
 
     /// Starts again from an estimate, with no memory of the past.
     fn reset(&mut self, estimate: &SVector<S, NE>);

@@ -13,8 +13,9 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::dense::{applied, product};
 use crate::numeric::exponential::Propagator;
+use crate::numeric::linear::solve;
 use crate::numeric::sum::{all_finite, as_blemish};
-use crate::{Fault, Real, Sum};
+use crate::{Fault, Functions, Real, Sum};
 pub use drift::Drift;
 pub use turn::Turn;
 
@@ -42,6 +43,9 @@ pub trait Extension<S: Real, const NZ: usize>: Copy + Debug + PartialEq {
 
     /// `z` for a given `theta`.
     fn coordinates(&self, theta: &SVector<S, NZ>) -> SVector<S, NZ>;
+
+    /// `theta` for given coordinates, functions of parameters. None where the fundamental matrix has no inverse, to rounding.
+    fn theta(&self, z: &Functions<S, NZ, NZ>) -> Option<Functions<S, NZ, NZ>>;
 
     /// Advances by `dt` seconds with the flow known at both ends.
     ///
@@ -108,6 +112,10 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Integrator<S, NZ> {
 
     fn coordinates(&self, theta: &SVector<S, NZ>) -> SVector<S, NZ> {
         self.chi.value() + theta
+    }
+
+    fn theta(&self, z: &Functions<S, NZ, NZ>) -> Option<Functions<S, NZ, NZ>> {
+        Some(Functions { values: z.values - self.chi.value(), slopes: z.slopes })
     }
 
     fn advance(&mut self, start: &Flow<S, NZ>, end: &Flow<S, NZ>, dt: S) -> Result<(), Fault> {
@@ -210,6 +218,12 @@ impl<S: Real, const NZ: usize> Extension<S, NZ> for Fundamental<S, NZ> {
 
     fn coordinates(&self, theta: &SVector<S, NZ>) -> SVector<S, NZ> {
         self.xi.value() + applied(self.psi.value(), theta)
+    }
+
+    fn theta(&self, z: &Functions<S, NZ, NZ>) -> Option<Functions<S, NZ, NZ>> {
+        let psi = *self.psi.value();
+        let values = solve(psi, z.values - self.xi.value()).ok()?;
+        Some(Functions { values, slopes: solve(psi, z.slopes).ok()? })
     }
 
     fn advance(&mut self, start: &Flow<S, NZ>, end: &Flow<S, NZ>, dt: S) -> Result<(), Fault> {

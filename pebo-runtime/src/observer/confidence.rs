@@ -4,10 +4,10 @@
 //! that of sensors: with a [`SampledRegression`](crate::SampledRegression), in the [output form](crate::OutputForm) or
 //! of a static regression.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::errors_in_variables::Taken;
-use super::{Observer, check, constrained};
+use super::{Observer, State, check, constrained};
 use crate::estimator::Information;
 use crate::extension::Extension;
 use crate::regression::{Outcome, Rows};
@@ -57,10 +57,15 @@ where
     /// unknown has drifted, and is known less well.
     pub fn standard_error_after(&self, dt: M::Scalar) -> Option<SVector<M::Scalar, NX>> {
         let terms = self.terms.as_ref()?;
-        let eta = self.state.estimator.estimate();
-        let root = self.covariance_root(dt)?;
+        let State { extension, estimator, .. } = &self.state;
+        let root = estimator.covariance_root(dt)?;
+        // Of unknowns that depend on one another none is less certain than they all make it.
+        let (eta, root) = match self.nearest(extension, estimator, terms) {
+            Some(near) => (near.values, constrained::covariance_root(&root, &near.slopes).unwrap_or(root)),
+            None => (estimator.estimate(), root),
+        };
         let at = |eta: SVector<M::Scalar, NE>| {
-            self.model.recover_unbounded(&self.state.extension.coordinates(&self.model.theta(&eta)), terms)
+            self.model.recover_unbounded(&extension.coordinates(&self.model.theta(&eta)), terms)
         };
         let estimate = at(eta);
         let mut squares = SVector::<M::Scalar, NX>::zeros();
@@ -97,7 +102,7 @@ where
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
         let regressor = outcome.regressor();
         let error = outcome.regressand() - regressor * self.state.estimator.estimate();
-        let root = regressor * self.covariance_root(dt).ok_or(Fault::State)?;
+        let root = regressor * self.state.estimator.covariance_root(dt).ok_or(Fault::State)?;
         // White noise of intensity 1 has the variance 1/dt in a sample.
         let scale = Real::sqrt(dt);
         let (value, root) = (error * scale, root * scale);
@@ -115,19 +120,6 @@ where
         } else {
             Err(Fault::State)
         }
-    }
-
-    /// A root of the covariance of the unknown, which is as uncertain as `theta` is where it holds functions of it.
-    fn covariance_root(&self, dt: M::Scalar) -> Option<SMatrix<M::Scalar, NE, NE>> {
-        self.root_of(&self.state.estimator, dt)
-    }
-
-    /// The same of an estimator.
-    pub(super) fn root_of(&self, estimator: &E, dt: M::Scalar) -> Option<SMatrix<M::Scalar, NE, NE>> {
-        let root = estimator.covariance_root(dt)?;
-        let theta = self.model.theta(&estimator.estimate());
-        let Some(functions) = self.model.functions(&theta) else { return Some(root) };
-        Some(constrained::covariance_root(&root, &functions.slopes).unwrap_or(root))
     }
 }
 

@@ -1,8 +1,8 @@
-//! Keeps the estimate of functions of theta among their values.
+//! Finds the value of functions that is nearest to an estimate of them.
 //!
-//! In: an estimate of `eta` with its information matrix, and `eta` as a function of `theta`. Out: the value of that
-//! function which is nearest in the norm of the information, found by Gauss and Newton's method from
-//! `theta(eta)`; and the covariance that `eta` has as a function of `theta`.
+//! In: an estimate of `eta` with its information matrix, and `eta` as a function of parameters: of `theta`, or of the states
+//! through `phi`. Out: the value of that function which is nearest in the norm of the information, with its slopes, found
+//! by Gauss and Newton's method from given parameters; and the covariance that `eta` has as such a function.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -19,19 +19,19 @@ const ITERATIONS: usize = 3;
 /// true, and the estimate stays as it is.
 const MOST_DEVIATIONS: f64 = 6.0;
 
-/// The value of the functions of theta that is nearest to an estimate; none where there are no such functions, or it is
-/// not found.
+/// The value of functions that is nearest to an estimate, from these parameters on; none where there are no such
+/// functions, or it is not found.
 pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
     functions: impl Fn(&SVector<S, NZ>) -> Option<Functions<S, NE, NZ>>,
-    mut theta: SVector<S, NZ>,
+    mut parameters: SVector<S, NZ>,
     eta: &SVector<S, NE>,
     information: &Information<S, NE>,
-) -> Option<SVector<S, NE>> {
-    let mut at = functions(&theta)?;
+) -> Option<Functions<S, NE, NZ>> {
+    let mut at = functions(&parameters)?;
     let mut misfit = information.misfit(&(at.values - eta));
     for _ in 0..ITERATIONS {
         let Ok(step) = information.along(&(at.values - eta), &at.slopes).solve() else { break };
-        let next = theta + step;
+        let next = parameters + step;
         let Some(there) = functions(&next) else { break };
         let left = information.misfit(&(there.values - eta));
         // False for a NaN too.
@@ -39,10 +39,10 @@ pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
         if !is_nearer {
             break;
         }
-        (theta, at, misfit) = (next, there, left);
+        (parameters, at, misfit) = (next, there, left);
     }
     let most: S = Real::from_f64(MOST_DEVIATIONS * MOST_DEVIATIONS);
-    (misfit <= most && all_finite(&at.values)).then_some(at.values)
+    (misfit <= most && all_finite(&at.values)).then_some(at)
 }
 
 /// A root of the covariance that functions of theta with these slopes have, if without that dependence it has the given

@@ -126,7 +126,7 @@ where
     ) -> Option<R::Step> {
         let model = &self.model;
         let sides = |y: &SVector<M::Scalar, NY>| model.regression(extension, &model.terms(y), u);
-        let root = self.root_of(estimator, nalgebra::zero())?;
+        let root = estimator.covariance_root(nalgebra::zero())?;
         let equations = Equations { sides: &sides, sensors, eta: estimator.estimate(), root };
         let mut linearised = equations.linearised(y, &equations.likely(y, &left_out));
         for row in (0..NR).filter(|row| left_out[*row]) {

@@ -11,7 +11,9 @@ use nalgebra::{SMatrix, SVector};
 use crate::extension::{Extension, Flow};
 use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
-use crate::{Estimator, Fault, Filter, FilteredRegression, Model, Real, Regression, RegressionOperator, unwrapped};
+use crate::{
+    Estimator, Fault, Filter, FilteredRegression, Functions, Model, Real, Regression, RegressionOperator, unwrapped,
+};
 pub use confidence::Innovation;
 use errors_in_variables::{Correction, Led, Taken};
 pub use late::{Late, LateObserver};
@@ -40,12 +42,13 @@ use rebasing::Rebasing;
 /// mean input. [`Limits`](crate::Limits) find samples that are finite but out of range or saturated, before they get
 /// here. The whole state can be saved and restored: [`state`](Self::state).
 ///
-/// # Functions of theta
+/// # Unknowns that depend on one another
 ///
-/// Where the regression's unknown holds functions of `theta` ([`Model::functions`]), as `theta` and `theta^2`, an
-/// estimator with an information matrix keeps its estimate among their values: after each sample it goes to the one
-/// that its information is nearest to. So an unknown that the samples excite in some directions only is known in all of
-/// which `theta` leaves no choice.
+/// Where the regression's unknown holds functions of `theta` ([`Model::functions`]), as `theta` and `theta^2`, or `phi` has
+/// components that depend on one another ([`Model::transform`]), as `x1`, `x2` and `x1 x2`, the estimator takes them for
+/// independent: it is linear, and converges from any start. Of an estimator with an information matrix the estimate that
+/// goes out is then the nearest one, in the norm of the information, among those values. So an unknown that the samples
+/// excite in some directions only is known in all of which `theta` or the state leaves no choice.
 ///
 /// # Re-basing
 ///
@@ -210,12 +213,13 @@ where
 
     /// The estimate of `theta`.
     pub fn theta(&self) -> SVector<M::Scalar, NZ> {
-        self.model.theta(&self.state.estimator.estimate())
+        self.model.theta(&self.eta())
     }
 
     /// The estimate of the regression's unknown.
     pub fn eta(&self) -> SVector<M::Scalar, NE> {
-        self.state.estimator.estimate()
+        let State { extension, estimator, .. } = &self.state;
+        self.terms.as_ref().map_or_else(|| estimator.estimate(), |terms| self.unknown(extension, estimator, terms))
     }
 
     /// The terms of the last accepted output; none before the first sample.
@@ -284,7 +288,6 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let mut estimator = self.state.estimator.clone();
         estimator.advance(&regression.regressor(), &regression.regressand(), dt)?;
-        self.constrain(&mut estimator);
         self.accept(Next { extension, regression, estimator }, terms, y)
     }
 
@@ -308,39 +311,59 @@ where
         equations: &Sides<M::Scalar, NR, NE>,
         sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<(E, Option<R::Step>), Fault> {
-        let Some((sensors, corrected)) = &self.correction else {
-            return Ok((self.learned(before, equations, sample.dt)?, None));
+        let learned = |mut estimator: E, equations: &Sides<M::Scalar, NR, NE>| {
+            estimator.advance(&equations.factor, &equations.known, sample.dt).map(|()| estimator)
         };
-        let estimator = self.learned(before.clone(), equations, sample.dt)?;
+        let Some((sensors, corrected)) = &self.correction else {
+            return Ok((learned(before, equations)?, None));
+        };
+        let estimator = learned(before.clone(), equations)?;
         match corrected(self, Led { extension, estimator: &estimator, regression }, sample, sensors) {
             Some(outcome) => {
                 let equations = Sides { known: outcome.regressand(), factor: outcome.regressor() };
-                Ok((self.learned(before, &equations, sample.dt)?, Some(outcome)))
+                Ok((learned(before, &equations)?, Some(outcome)))
             }
             None => Ok((estimator, None)),
         }
     }
 
-    /// The estimator after equations at the end of `dt` seconds, among the values of functions of theta.
-    fn learned(&self, mut estimator: E, equations: &Sides<M::Scalar, NR, NE>, dt: M::Scalar) -> Result<E, Fault> {
-        estimator.advance(&equations.factor, &equations.known, dt)?;
-        self.constrain(&mut estimator);
-        Ok(estimator)
+    /// The unknown where it is nearest to the estimate: among the values of functions of theta, or in the range of `phi`; none
+    /// of a model that has neither.
+    #[inline]
+    fn nearest(
+        &self,
+        extension: &M::Extension,
+        estimator: &E,
+        terms: &M::Terms,
+    ) -> Option<Functions<M::Scalar, NE, NZ>> {
+        let (model, eta) = (&self.model, estimator.estimate());
+        let information = estimator.information()?;
+        let theta = model.theta(&eta);
+        if !M::RELATED {
+            return constrained::nearest(|theta| model.functions(theta), theta, &eta, information);
+        }
+        const { assert!(!M::RELATED || NE == NZ, "the unknown is theta itself") };
+        let unknown = |parameters: &SVector<M::Scalar, NZ>| {
+            let Functions { values, slopes } = extension.theta(&model.range(parameters, terms)?)?;
+            let values = SVector::from_fn(|i, _| values[i]);
+            Some(Functions { values, slopes: SMatrix::from_fn(|i, j| slopes[(i, j)]) })
+        };
+        let start = model.parameters(&extension.coordinates(&theta), terms);
+        constrained::nearest(unknown, start, &eta, information)
     }
 
-    /// Takes the estimate to the values of functions of theta.
+    /// The unknown of an estimate.
     #[inline]
-    fn constrain(&self, estimator: &mut E) {
-        let model = &self.model;
-        estimator.constrain(|eta, information| {
-            constrained::nearest(|theta| model.functions(theta), model.theta(eta), eta, information)
-        });
+    fn unknown(&self, extension: &M::Extension, estimator: &E, terms: &M::Terms) -> SVector<M::Scalar, NE> {
+        let nearest = self.nearest(extension, estimator, terms);
+        nearest.map_or_else(|| estimator.estimate(), |functions| functions.values)
     }
 
     /// Takes the first sample, which has no interval behind it.
     fn begin(&mut self, terms: M::Terms, y: &SVector<M::Scalar, NY>) -> Result<SVector<M::Scalar, NX>, Fault> {
         let extension = self.model.begin(&self.state.extension, &terms);
-        let estimate = self.model.recover(&extension.coordinates(&self.theta()), &terms);
+        let theta = self.model.theta(&self.state.estimator.estimate());
+        let estimate = self.model.recover(&extension.coordinates(&theta), &terms);
         if !all_finite(&estimate) {
             return Err(Fault::Estimate);
         }
@@ -382,8 +405,7 @@ where
         estimator: &E,
         terms: &M::Terms,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let theta = self.model.theta(&estimator.estimate());
-        let estimate = self.model.recover(&extension.coordinates(&theta), terms);
+        let estimate = self.state_of(extension, estimator, terms);
         if all_finite(&estimate) { Ok(estimate) } else { Err(Fault::Estimate) }
     }
 
@@ -415,7 +437,8 @@ where
         let model = &self.model;
         let start = &self.state.extension;
         let mut end = *start;
-        let z = if M::LINEARISED { start.coordinates(&self.theta()) } else { SVector::zeros() };
+        let theta = || model.theta(&self.state.estimator.estimate());
+        let z = if M::LINEARISED { start.coordinates(&theta()) } else { SVector::zeros() };
         let [first, last] = self.flows([before, after], [u_before, u_after], &z, dt);
         end.advance(&first, &last, dt)?;
 
@@ -469,7 +492,14 @@ where
 
     /// The estimate of the state that goes with an output.
     fn estimate_with(&self, terms: &M::Terms) -> SVector<M::Scalar, NX> {
-        self.model.recover(&self.state.extension.coordinates(&self.theta()), terms)
+        self.state_of(&self.state.extension, &self.state.estimator, terms)
+    }
+
+    /// The state of an estimate.
+    #[inline]
+    fn state_of(&self, extension: &M::Extension, estimator: &E, terms: &M::Terms) -> SVector<M::Scalar, NX> {
+        let eta = self.unknown(extension, estimator, terms);
+        self.model.recover(&extension.coordinates(&self.model.theta(&eta)), terms)
     }
 }
 

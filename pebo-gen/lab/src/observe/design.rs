@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use pebo_cas::{Arena, Expr, Symbol};
-use pebo_design::analysis::{Derivation, LeftInverse, OutputSlopes, RegressionKind};
+use pebo_design::analysis::{Derivation, LeftInverse, OutputSlopes, RegressionKind, RelatedTransform};
 use pebo_design::program::{Interpreter, Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
@@ -53,6 +53,9 @@ pub(crate) struct Design {
     pub(crate) theta: Program,
     /// From theta to eta, then its derivatives by rows, where eta has more components.
     pub(crate) functions: Option<Program>,
+    /// From the recovered states and y to the components of phi, then their derivatives by rows, where these depend on
+    /// one another.
+    pub(crate) transform: Option<Program>,
     /// From z, y to the recovered states.
     pub(crate) phi_left: Program,
     /// The number of unknowns eta of the model's regression.
@@ -133,6 +136,13 @@ impl Design {
             theta: compile(&[&regression.eta_symbols], &regression.theta)?,
             functions: match regression.slopes(plant).filter(|_| !settings.output) {
                 Some(slopes) => Some(compile(&[&plant.theta], &sides(&regression.eta, &slopes))?),
+                None => None,
+            },
+            transform: match RelatedTransform::of(plant, inverse, regression) {
+                Some(RelatedTransform { phi, slopes }) => {
+                    let recovered: Vec<Symbol> = inverse.x.iter().map(|(state, _)| *state).collect();
+                    Some(compile(&[&recovered, &y], &sides(&phi, &slopes))?)
+                }
                 None => None,
             },
             phi_left: compile(&[&plant.z, &y], &states)?,

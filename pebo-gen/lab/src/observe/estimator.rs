@@ -116,11 +116,11 @@ impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
         self.face_mut().shift(shift);
     }
 
-    fn constrain(&mut self, onto: impl FnOnce(&SVector<f64, N>, &Information<f64, N>) -> Option<SVector<f64, N>>) {
+    fn information(&self) -> Option<&Information<f64, N>> {
         match self {
-            Self::Squares(squares) => Estimator::<f64, N, N>::constrain(squares, onto),
-            Self::Adaptive(squares) => squares.constrain(onto),
-            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => {}
+            Self::Squares(squares) => Estimator::<f64, N, N>::information(squares),
+            Self::Adaptive(squares) => Estimator::<f64, N, N>::information(squares),
+            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
         }
     }
 

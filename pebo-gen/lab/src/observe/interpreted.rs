@@ -96,6 +96,8 @@ pub(super) struct Derived<X, K, const N: usize> {
     slopes: Option<Rc<RefCell<Interpreter>>>,
     theta: Rc<RefCell<Interpreter>>,
     functions: Option<Rc<RefCell<Interpreter>>>,
+    /// The number of recovered states, and the transform as a function of them.
+    transform: Option<(usize, Rc<RefCell<Interpreter>>)>,
     phi_left: Rc<RefCell<Interpreter>>,
     /// In the output form: the rows of the regression with a rate, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
@@ -126,6 +128,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             slopes: design.slopes.as_ref().map(interpreter),
             theta: interpreter(&design.theta),
             functions: design.functions.as_ref().map(interpreter),
+            transform: design.transform.as_ref().map(|program| (design.recovered.len(), interpreter(program))),
             phi_left: interpreter(&design.phi_left),
             kind: PhantomData,
         }
@@ -163,6 +166,20 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             }
         }
         Flow { lambda, h }
+    }
+
+    /// The number of outputs among the coordinates, in the output form.
+    fn rates(&self) -> usize {
+        self.output.as_ref().map_or(0, |(rates, _)| *rates)
+    }
+
+    /// The outputs of a sample, in the output form as an estimate has them.
+    fn expected_at(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut y = *y;
+        for (row, (place, _)) in self.expected.iter().flatten().take(self.rates()).enumerate() {
+            y[*place] = z[row];
+        }
+        y
     }
 
     /// The sides of the model's own regression; in the output form, functions of z.
@@ -241,6 +258,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     }
 
     const LINEARISED: bool = true;
+    const RELATED: bool = true;
 
     fn flow(&self, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Flow<f64, N> {
         self.flow_at(y, u, &SVector::zeros())
@@ -329,7 +347,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
             return *extension;
         }
         let known = self.regression(extension, y, &SVector::zeros()).known;
-        let rates = self.output.as_ref().map_or(0, |(rates, _)| *rates);
+        let rates = self.rates();
         let mut begun = *extension;
         begun.rebase(&SVector::from_fn(|row, _| if row < rates { -known[row] } else { 0.0 }));
         let held = self.primitive(extension, y).factor;
@@ -338,12 +356,34 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         begun.mapped(&map)
     }
 
-    fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut y = *y;
-        let first = self.output.as_ref().map_or(0, |(rows, _)| *rows);
-        for (row, (place, _)) in self.expected.iter().flatten().take(first).enumerate() {
-            y[*place] = z[row];
+    fn parameters(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let Some((states, _)) = self.transform else { return *z };
+        let (first, x) = (self.rates(), self.recover(z, y));
+        let state = |i: usize| i.checked_sub(first).filter(|i| *i < states).map_or(0.0, |i| x[i]);
+        SVector::from_fn(|i, _| if i < first { z[i] } else { state(i) })
+    }
+
+    fn range(&self, parameters: &SVector<f64, N>, y: &SVector<f64, N>) -> Option<Functions<f64, N, N>> {
+        let (states, transform) = self.transform.as_ref()?;
+        let (first, y) = (self.rates(), self.expected_at(parameters, y));
+        let mut transform = transform.borrow_mut();
+        let of = |place: usize| if place < *states { parameters[first + place] } else { y[place - states] };
+        let mut found = transform.evaluate(of);
+        let (inner, inner_slopes): (SVector<f64, N>, SMatrix<f64, N, N>) =
+            (column(&mut found, self.nz), rows(&mut found, *states));
+        let mut values = *parameters;
+        let mut slopes = SMatrix::identity();
+        for i in 0..self.nz {
+            values[first + i] = inner[i];
+            (0..self.nz).for_each(|j| slopes[(first + i, first + j)] = inner_slopes[(i, j)]);
         }
+        // Beyond its size nothing is a coordinate.
+        (first + self.nz..N).for_each(|i| (values[i], slopes[(i, i)]) = (0.0, 0.0));
+        Some(Functions { values, slopes })
+    }
+
+    fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let (first, y) = (self.rates(), self.expected_at(z, y));
         let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
         column(&mut self.phi_left.borrow_mut().evaluate(of), N)
     }

@@ -54,8 +54,8 @@ impl<const N: usize> Estimator<f64, N, N> for MonitoredEstimator<N> {
         self.estimator.shift(shift);
     }
 
-    fn constrain(&mut self, onto: impl FnOnce(&SVector<f64, N>, &Information<f64, N>) -> Option<SVector<f64, N>>) {
-        self.estimator.constrain(onto);
+    fn information(&self) -> Option<&Information<f64, N>> {
+        self.estimator.information()
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {

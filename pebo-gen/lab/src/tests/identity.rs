@@ -15,7 +15,7 @@ use crate::closed_loop::run::LoopState;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
-use pebo_design::model::{Model, Rebase};
+use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 use pebo_design::program::{Interpreter, lower};
 
@@ -48,7 +48,6 @@ impl Loop {
     /// no transform knows, and without baselines and their panels.
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
-        model.observer.rebase = Rebase::default();
         if let Some(simulation) = &mut model.simulation {
             simulation.baselines.clear();
             simulation.panels.clear();
@@ -62,7 +61,9 @@ impl Loop {
     }
 
     fn scenario(&self, overrides: &Overrides) -> Scenario {
-        Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides).unwrap()
+        let mut scenario = Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides).unwrap();
+        scenario.design.settings.rebase = None;
+        scenario
     }
 
     fn at_values(&self, formulas: &[Expr]) -> Vec<Expr> {

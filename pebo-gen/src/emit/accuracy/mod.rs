@@ -20,7 +20,7 @@ use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::definition::tasks::varying;
-use super::definition::{Argument, Definitions, FUNCTIONS, Group, OUTPUT_SLOPES, PERIODS, VELOCITY};
+use super::definition::{Argument, Definitions, FUNCTIONS, Group, OUTPUT_SLOPES, PERIODS, TRANSFORM, VELOCITY};
 use super::literal::Scalar;
 use super::module::prose::section;
 pub use cause::Cause;
@@ -247,7 +247,7 @@ fn measured(groups: &[Group]) -> Vec<Expr> {
 /// The function runs with every sample, and its digits count: the observer subtracts with the slopes what it adds with them,
 /// so that their errors weigh as much as the difference between a sample and its expectation.
 fn is_measured(group: &Group) -> bool {
-    ![VELOCITY, PERIODS, FUNCTIONS, OUTPUT_SLOPES, "theta"].contains(&group.name)
+    ![VELOCITY, PERIODS, FUNCTIONS, TRANSFORM, OUTPUT_SLOPES, "theta"].contains(&group.name)
 }
 
 /// The formulas of a group.

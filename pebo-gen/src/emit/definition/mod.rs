@@ -6,7 +6,7 @@ pub(crate) mod choice;
 mod fundamental;
 pub(crate) mod tasks;
 
-use Argument::{Eta, Extension, Theta, U, Y, Z};
+use Argument::{Eta, Extension, Theta, U, X, Y, Z};
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,9 @@ use rustc_hash::FxHashMap;
 use super::error::EmitError;
 use fundamental::constant_entries;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Symbol};
-use pebo_design::analysis::{Class, Derivation, LeftInverse, Outcome, OutputSlopes, Regression, RegressionKind};
+use pebo_design::analysis::{
+    Class, Derivation, LeftInverse, Outcome, OutputSlopes, Regression, RegressionKind, RelatedTransform,
+};
 use pebo_design::plant::{Plant, Settings};
 
 /// An argument of a function of `Model`.
@@ -27,6 +29,7 @@ pub(super) enum Argument {
     Z,
     Eta,
     Theta,
+    X,
 }
 
 impl Argument {
@@ -39,6 +42,7 @@ impl Argument {
             Self::Z => "z",
             Self::Eta => "eta",
             Self::Theta => "theta",
+            Self::X => "x",
         }
     }
 }
@@ -84,6 +88,15 @@ pub(super) const ETA: &str = "eta";
 /// Their derivatives.
 pub(super) const SLOPES: &str = "slopes";
 
+/// The transform and its derivatives by the recovered states, of a model whose components of phi depend on one another.
+pub(super) const TRANSFORM: &str = "transform";
+
+/// The components of phi.
+pub(super) const PHI: &str = "phi";
+
+/// Their derivatives.
+pub(super) const PHI_SLOPES: &str = "phi_slopes";
+
 /// The slopes of the rates by the outputs, of a model whose observer has these among its states.
 pub(super) const OUTPUT_SLOPES: &str = "output_slopes";
 
@@ -113,7 +126,7 @@ pub(super) struct Group<'d> {
 
 /// The functions of `Model` by name: their arguments, `Y` for the terms of the sample, and the definitions whose values
 /// they give.
-pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 9] = [
+pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 10] = [
     (PERIODS, &[], &[PERIODS]),
     ("flow", &[Y, U], &["h", "lambda"]),
     ("regression", &[Extension, Y, U], &["phi_0", "phi_1"]),
@@ -121,6 +134,7 @@ pub(super) const GROUPS: [(&str, &[Argument], &[&str]); 9] = [
     (OUTPUT_SLOPES, &[Y, U, Z], &[RATE_SLOPES, CASCADE_SLOPES]),
     ("theta", &[Eta], &["theta"]),
     (FUNCTIONS, &[Theta], &[ETA, SLOPES]),
+    (TRANSFORM, &[X, Y], &[PHI, PHI_SLOPES]),
     ("recover", &[Z, Y], &["phi_left"]),
     (VELOCITY, &[Z, Y], &[VELOCITY]),
 ];
@@ -140,6 +154,8 @@ pub(super) struct Definitions<'a> {
     z: Vec<Symbol>,
     /// theta, where the unknowns are functions of it that a step computes.
     theta: Vec<Symbol>,
+    /// The recovered states, where the transform is a function that a step computes.
+    x: Vec<Symbol>,
     /// chi of an integrator, xi of a fundamental solution.
     pub(super) chi: Vec<Symbol>,
     /// The columns of Psi, for a fundamental solution.
@@ -228,6 +244,13 @@ impl<'a> Definitions<'a> {
             functions.push(vector(ETA, "NE", regression.eta.clone()));
             functions.push(matrix(SLOPES, "NE", "NZ", &slopes));
         }
+        let related = RelatedTransform::of(plant, left_inverse, &regression);
+        let mut x = Vec::new();
+        if let Some(RelatedTransform { phi, slopes }) = related {
+            x = left_inverse.x.iter().map(|(state, _)| *state).collect();
+            functions.push(vector(PHI, "NZ", phi));
+            functions.push(matrix(PHI_SLOPES, "NZ", "NX", &slopes));
+        }
         let states = left_inverse.x.iter().map(|state| state.1).collect();
         functions.push(vector("phi_left", "NX", states));
         if let Some(pebo_design::plant::Class::Mechanical(mechanical)) = &plant.class {
@@ -246,6 +269,7 @@ impl<'a> Definitions<'a> {
             u: plant.u.clone(),
             z: plant.z.clone(),
             theta,
+            x,
             chi,
             psi,
             psi_entries,
@@ -270,6 +294,7 @@ impl<'a> Definitions<'a> {
             (Argument::Z, _) => vec![column(None, &self.z)],
             (Argument::Eta, _) => vec![column(None, &self.regression.eta_symbols)],
             (Argument::Theta, _) => vec![column(None, &self.theta)],
+            (Argument::X, _) => vec![column(None, &self.x)],
             (Argument::Extension, Class::Pebo) => vec![column(Some("chi"), &self.chi)],
             (Argument::Extension, Class::Gpebo) => {
                 vec![column(Some("xi"), &self.chi), Part { access: Some("psi"), columns: self.psi.clone() }]
@@ -282,9 +307,14 @@ impl<'a> Definitions<'a> {
         self.parts(argument).into_iter().flat_map(|part| part.columns.concat()).collect()
     }
 
-    /// Tests whether the unknowns are functions of theta that a step computes.
+    /// Tests whether a step computes the unknowns as functions of theta, or the transform.
     pub(super) fn has_functions(&self) -> bool {
-        !self.theta.is_empty()
+        !self.theta.is_empty() || self.has_transform()
+    }
+
+    /// Tests whether the transform is a function that a step computes.
+    pub(super) fn has_transform(&self) -> bool {
+        !self.x.is_empty()
     }
 
     /// Tests whether the observer has outputs among its states.

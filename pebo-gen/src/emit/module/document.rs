@@ -9,8 +9,8 @@ use super::formulas::{self, equation, is_linear, named, text};
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
 use crate::emit::definition::{
-    Argument, CASCADE_SLOPES, Definitions, ETA, FUNCTIONS, Group, INSTANTS, OUTPUT_SLOPES, PERIODS, RATE_SLOPES,
-    SLOPES, VELOCITY,
+    Argument, CASCADE_SLOPES, Definitions, ETA, FUNCTIONS, Group, INSTANTS, OUTPUT_SLOPES, PERIODS, PHI, PHI_SLOPES,
+    RATE_SLOPES, SLOPES, TRANSFORM, VELOCITY,
 };
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
@@ -65,7 +65,8 @@ pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged
     let constants = staged.constants.iter().copied().collect();
     let states = plant.x.iter().map(|state| state.rate.expr);
     let outputs = plant.y.iter().flat_map(|output| [output.rate.as_ref(), output.value.as_ref()]).flatten();
-    let shown = definitions.functions.iter().filter(|function| ![RATE_SLOPES, CASCADE_SLOPES].contains(&function.name));
+    let is_shown = |name| ![RATE_SLOPES, CASCADE_SLOPES, PHI, PHI_SLOPES].contains(&name);
+    let shown = definitions.functions.iter().filter(|function| is_shown(function.name));
     let entries = shown.flat_map(|definition| definition.rows.concat());
     let terms = staged.terms.iter().map(|term| arena.substitute(term.1, &constants));
     let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(identities(plant));
@@ -157,7 +158,7 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if is_linear(arena, definitions) => {}
             // The laws and formulas have the values, and with them their derivatives.
-            ETA | SLOPES | RATE_SLOPES | CASCADE_SLOPES => {}
+            ETA | SLOPES | RATE_SLOPES | CASCADE_SLOPES | PHI | PHI_SLOPES => {}
             "theta" => blocks.extend(named((arena, abbreviations), &plant.theta, &definition.rows)),
             _ => blocks.extend(formulas::of((arena, abbreviations), definitions, definition, MODULE)),
         }
@@ -387,6 +388,11 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
         FUNCTIONS => {
             "The unknowns `eta` of the regression as functions of `theta`, among whose values an observer keeps its \
              estimate, and their derivatives, written by columns: one for each component of `theta`."
+        }
+        TRANSFORM => {
+            "The transform `phi` as a function of the recovered states, and its derivatives, written by columns: one for each \
+             state. Its components depend on one another: the estimate is the state whose transform is nearest to that of the \
+             estimator."
         }
         OUTPUT_SLOPES => {
             "The derivatives of the rates by the outputs whose rates the regression has, at `z`: an observer in output form has \

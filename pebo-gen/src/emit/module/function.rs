@@ -11,7 +11,8 @@ use quote::quote;
 use super::{Module, Scope, doc, document, permission};
 use crate::emit::definition::tasks::varying;
 use crate::emit::definition::{
-    Argument, CASCADE_SLOPES, Definition, FUNCTIONS, Group, OUTPUT_SLOPES, Part, RATE_SLOPES, Shape, VELOCITY,
+    Argument, CASCADE_SLOPES, Definition, FUNCTIONS, Group, OUTPUT_SLOPES, Part, RATE_SLOPES, Shape, TRANSFORM,
+    VELOCITY,
 };
 use crate::emit::expression::{Piece, ident};
 use pebo_cas::Symbol;
@@ -132,6 +133,10 @@ impl Module<'_> {
                 quote!(Option<Functions<#scalar, NE, NZ>>),
                 quote!(Some(Functions { values: #first, slopes: #second })),
             ),
+            TRANSFORM => (
+                quote!(Option<Functions<#scalar, NZ, NX>>),
+                quote!(Some(Functions { values: #first, slopes: #second })),
+            ),
             _ => {
                 let Shape::Vector(size) = group.members[0].shape else {
                     unreachable!("a group that is no structure is a vector");
@@ -151,6 +156,7 @@ fn size(argument: Argument) -> Option<&'static str> {
         Argument::U => Some("NU"),
         Argument::Z | Argument::Theta => Some("NZ"),
         Argument::Eta => Some("NE"),
+        Argument::X => Some("NX"),
     }
 }
 

@@ -112,6 +112,11 @@ impl Module<'_> {
             let number = ident(INSTANTS);
             quote!(const INSTANTS: usize = #number;)
         });
+        let related = self.definitions.has_transform().then(|| {
+            quote!(
+                const RELATED: bool = true;
+            )
+        });
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let paper = self.paper();
         let rebase = self.rebase.then(|| {
@@ -142,6 +147,7 @@ impl Module<'_> {
                 type Terms = #terms_name;
                 const REGRESSION: Regression = Regression::#regression;
                 #instants
+                #related
                 #(#functions)*
             }
             #own
@@ -169,7 +175,8 @@ impl Module<'_> {
         let mut names = Names::default();
         let arena = &self.plant.arena;
         let parameters = self.plant.parameters.iter().map(|parameter| parameter.symbol);
-        let arguments = [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta, Argument::Theta];
+        let arguments =
+            [Argument::Y, Argument::U, Argument::Extension, Argument::Z, Argument::Eta, Argument::Theta, Argument::X];
         let arguments = arguments.into_iter().flat_map(|argument| self.definitions.symbols(argument));
         let symbols: Vec<Symbol> = parameters.chain(arguments).collect();
         let written: Vec<String> = symbols.iter().map(|symbol| arena.name(*symbol)).collect();

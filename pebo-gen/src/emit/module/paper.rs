@@ -67,6 +67,7 @@ impl Module<'_> {
             (Argument::U, _) => quote!(u: U),
             (Argument::Eta, _) => quote!(eta: [#scalar; NE]),
             (Argument::Theta, _) => quote!(theta: [#scalar; NZ]),
+            (Argument::X, _) => quote!(x: X),
         });
         let returned = match (definition.name, definition.shape) {
             ("phi_left", _) => quote!(X),

@@ -59,6 +59,9 @@ pub(super) fn confirm(
     if read.choices.get("INSTANTS").map(String::as_str) != definitions.has_instants().then_some(INSTANTS) {
         return Err(EmitError::Unreadable { code: "the equations that hold at every instant".to_owned() });
     }
+    if read.choices.get("RELATED").map(String::as_str) != definitions.has_transform().then_some("true") {
+        return Err(EmitError::Unreadable { code: "whether the components of phi depend on one another".to_owned() });
+    }
     let values: Option<Vec<Rational>> = plant.parameters.iter().map(|parameter| parameter.value.clone()).collect();
     if !plant.parameters.is_empty() && read.default != values {
         return Err(EmitError::Unreadable { code: "the values of the parameters".to_owned() });
@@ -259,11 +262,12 @@ fn model(
                 read.choices.insert(entry.ident.to_string(), last_segment(&entry.ty)?);
             }
             ImplItem::Const(entry) => {
-                let syn::Expr::Path(path) = &entry.expr else {
-                    return Err(unreadable(entry));
+                let value = match &entry.expr {
+                    syn::Expr::Path(path) => path.path.segments.last().map(|last| last.ident.to_string()),
+                    syn::Expr::Lit(literal) => Some(literal.to_token_stream().to_string()),
+                    _ => None,
                 };
-                let last = path.path.segments.last().ok_or_else(|| unreadable(entry))?;
-                read.choices.insert(entry.ident.to_string(), last.ident.to_string());
+                read.choices.insert(entry.ident.to_string(), value.ok_or_else(|| unreadable(entry))?);
             }
             ImplItem::Fn(function) => {
                 let mut scope = globals.clone();

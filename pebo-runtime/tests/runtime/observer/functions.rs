@@ -1,8 +1,9 @@
-//! Unknowns that are functions of theta: the estimate remains among their values.
+//! Unknowns that depend on one another: the estimate that goes out is among their values.
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Flow, Functions, Gradient, Integrator, LeastSquares, Model, Observer, Regression, SampledRegression, Sides,
+    Flow, Functions, Fundamental, Gradient, Integrator, LeastSquares, Model, Observer, OutputForm, Rebase, Regression,
+    SampledRegression, Sides, Within,
 };
 
 type Scalar = SVector<f64, 1>;
@@ -151,4 +152,89 @@ fn an_estimate_that_is_far_from_all_values_stays() {
     assert!((after(true, -3.0) - Pair::new(1.0, -3.0)).amax() < 0.1, "{}", after(true, -3.0));
     let found = after(true, 1.0);
     assert!((found - Pair::new(1.0, 1.0)).amax() < 1e-3, "{found}");
+}
+
+/// `y' = x1 + u x1 x2 - y` with the constants x1 and x2: `z = (x1, x2, x1 x2)`. Samples say nothing of x2 but by the product.
+#[derive(Clone, Copy, Debug)]
+struct Lifted<const RELATED: bool>;
+
+impl<const RELATED: bool> Model<2, 1, 1, 3, 1, 3> for Lifted<RELATED> {
+    type Scalar = f64;
+    type Extension = Fundamental<f64, 3>;
+    type X = Pair;
+    type Y = Scalar;
+    type U = Scalar;
+    type Terms = Scalar;
+    const REGRESSION: Regression = Regression::Dynamic;
+    const RELATED: bool = RELATED;
+
+    fn terms(&self, y: &Scalar) -> Scalar {
+        *y
+    }
+    fn flow(&self, _y: &Scalar, _u: &Scalar) -> Flow<f64, 3> {
+        Flow::plain(Triple::zeros())
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Scalar, u: &Scalar) -> Sides<f64, 1, 3> {
+        let row = SMatrix::<f64, 1, 3>::new(1.0, 0.0, u[0]);
+        Sides { known: row * extension.xi() - y, factor: row * extension.psi() }
+    }
+    fn primitive(&self, _: &Self::Extension, y: &Scalar) -> Sides<f64, 1, 3> {
+        Sides { known: *y, factor: SMatrix::zeros() }
+    }
+    fn theta(&self, eta: &Triple) -> Triple {
+        *eta
+    }
+    fn transform(&self, x: &Pair, _y: &Scalar) -> Option<Functions<f64, 3, 2>> {
+        let &[[x1, x2]] = &x.data.0;
+        let slopes = SMatrix::from([[1.0, 0.0, x2], [0.0, 1.0, x1]]);
+        Some(Functions { values: Triple::new(x1, x2, x1 * x2), slopes })
+    }
+    fn recover(&self, z: &Triple, _y: &Scalar) -> Pair {
+        Pair::new(z[0], z[1])
+    }
+}
+
+impl<const RELATED: bool> Rebase<2, 1, 1, 3, 1> for Lifted<RELATED> {}
+
+const STATE: Pair = Pair::new(2.0, 0.7);
+
+/// The samples of `Lifted`, whose output relaxes towards `x1 + u x1 x2`, with an error of the sensor that has no mean over
+/// a period.
+fn lifted_samples() -> impl Iterator<Item = (Scalar, Scalar)> {
+    let mut output = 0.0;
+    (0..400).map(move |k| {
+        let (u, sign) = (1.0 + f64::from(k).sin(), if k % 2 == 0 { NOISE } else { -NOISE });
+        if k > 0 {
+            let end = STATE[0] + u * STATE[0] * STATE[1];
+            output = end + (output - end) * (-0.05_f64).exp();
+        }
+        (Scalar::new(output + sign), Scalar::new(u))
+    })
+}
+
+#[test]
+fn a_state_is_known_by_a_component_that_holds_it() {
+    type Lift<const RELATED: bool> = OutputForm<Lifted<RELATED>, f64, 1, 3>;
+    fn run<
+        M: Model<2, 1, 1, 4, 1, 4, Scalar = f64, Extension = Fundamental<f64, 4>, X = Pair, Y = Scalar, U = Scalar>,
+    >(
+        model: M,
+    ) -> (Pair, Pair) {
+        let squares = LeastSquares::diagonal(&SVector::<f64, 4>::new(1e-4, 4.0, 4.0, 16.0), 0.0).unwrap();
+        let regression = SampledRegression::<f64, 1, 4>::new(&Scalar::new(NOISE * 0.05_f64.sqrt())).unwrap();
+        let mut observer = Observer::with_regression(model, squares, regression, SVector::zeros()).unwrap();
+        let mut error = Pair::zeros();
+        for (y, u) in lifted_samples() {
+            error = observer.step(y, u, 0.05).unwrap() - STATE;
+        }
+        (error, observer.standard_error().unwrap())
+    }
+    let (blind, unknown) = run(Lift::new(Lifted::<false>));
+    assert!(blind[1].abs() > 0.6 && unknown[1] > 1.9, "{blind} {unknown}");
+    // A step is exact where the input is held: what is left is the noise, a few standard errors.
+    let (error, known) = run(Lift::new(Lifted::<true>));
+    assert!(known.amax() < 0.02 && error.abs() < 4.0 * known, "{error} {known}");
+    // Bounds on the states that hold change nothing.
+    let within = Within::new(Lift::new(Lifted::<true>), &Pair::zeros(), &Pair::repeat(9.0)).unwrap();
+    assert_eq!(run(within), (error, known));
 }
