@@ -189,4 +189,9 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [p]\ny: [q, r, m]\nu: [v]\nf_x: {p: v}\nf_y: {q: p + m*exp(p^2), r: exp(p^2), m: v}\nphi: [p]",
         Undecided(Code::RegressionNonlinear),
     ),
+    (
+        "value with a product that is a component of phi",
+        "x: [a, b]\ny: [s]\nu: [v]\nf_x: {a: 0, b: 0}\ng_y: {s: a + v*b + v^2*a*b}\nphi: [a, b, a*b]",
+        Accepted("static linear over time"),
+    ),
 ];

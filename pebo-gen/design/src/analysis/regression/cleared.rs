@@ -89,11 +89,16 @@ fn forms_in_z(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
         return Some(linear()).filter(|forms| !forms.is_empty()).unwrap_or_else(|| vec![written]);
     }
     let everywhere = premises.domain.without_equations();
-    let is_affine = |form: Expr| matches!(affine::of(premises.plant, &everywhere, form), Ok(Some(_)));
-    if let Some(form) = with_other_values(premises, identity).filter(|form| is_affine(*form))
-        && !is_affine(identity)
-    {
-        return vec![in_z(form)];
+    let affine = |form: Expr| affine::of(premises.plant, &everywhere, form).ok().flatten();
+    match affine(identity) {
+        // A component of phi may be a product of others, which the left inverse writes out.
+        Some(row) if premises.row(written).is_none() => return vec![premises.of_row(&row)],
+        Some(_) => {}
+        None => {
+            if let Some(form) = with_other_values(premises, identity).filter(|form| affine(*form).is_some()) {
+                return vec![in_z(form)];
+            }
+        }
     }
     let separable = |form: &Expr| is_separable(premises, *form);
     if separable(&written) {
