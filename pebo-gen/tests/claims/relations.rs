@@ -192,6 +192,6 @@ pub(super) const RELATIONS: &[Row] = &[
     (
         "value with a product that is a component of phi",
         "x: [a, b]\ny: [s]\nu: [v]\nf_x: {a: 0, b: 0}\ng_y: {s: a + v*b + v^2*a*b}\nphi: [a, b, a*b]",
-        Accepted("static linear over time"),
+        Accepted("static linear excitation"),
     ),
 ];
