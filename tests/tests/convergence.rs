@@ -108,6 +108,7 @@ const STEPS: &[(&str, f64, f64)] = &[
     ("hydraulic_cylinder", 7e-4, 0.027),
     ("induction_motor", 0.003, 0.044),
     ("induction_motor_stator", 0.003, 0.044),
+    ("motor_warm", 0.004, 0.32),
     ("reactor", 22.0, 47.0),
 ];
 

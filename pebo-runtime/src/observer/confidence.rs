@@ -7,7 +7,7 @@
 use nalgebra::SVector;
 
 use super::errors_in_variables::Taken;
-use super::{Observer, State, check, constrained};
+use super::{Observer, State, check};
 use crate::estimator::Information;
 use crate::extension::Extension;
 use crate::regression::{Outcome, Rows};
@@ -58,12 +58,9 @@ where
     pub fn standard_error_after(&self, dt: M::Scalar) -> Option<SVector<M::Scalar, NX>> {
         let terms = self.terms.as_ref()?;
         let State { extension, estimator, .. } = &self.state;
+        let eta = self.eta();
         let root = estimator.covariance_root(dt)?;
-        // Of unknowns that depend on one another none is less certain than they all make it.
-        let (eta, root) = match self.nearest(extension, estimator, terms) {
-            Some(near) => (near.values, constrained::covariance_root(&root, &near.slopes).unwrap_or(root)),
-            None => (estimator.estimate(), root),
-        };
+        let root = self.projection().map_or(root, |projection| projection * root);
         let at = |eta: SVector<M::Scalar, NE>| {
             self.model.recover_unbounded(&extension.coordinates(&self.model.theta(&eta)), terms)
         };

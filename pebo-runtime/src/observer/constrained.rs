@@ -2,11 +2,10 @@
 //!
 //! In: an estimate of `eta` with its information matrix, and `eta` as a function of parameters: of `theta`, or of the states
 //! through `phi`. Out: the value of that function which is nearest in the norm of the information, with its slopes, found
-//! by Gauss and Newton's method from given parameters; and the covariance that `eta` has as such a function.
+//! by Gauss and Newton's method from given parameters; and the error that it has by an error of the estimate.
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::numeric::linear::solve;
 use crate::numeric::sum::all_finite;
 use crate::{Functions, Information, Real};
 
@@ -45,27 +44,17 @@ pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
     (misfit <= most && all_finite(&at.values)).then_some(at)
 }
 
-/// A root of the covariance that functions of theta with these slopes have, if without that dependence it has the given
-/// one: `J (J^T P^-1 J)^-1 J^T`. None where theta is not known.
-pub(super) fn covariance_root<S: Real, const NE: usize, const NZ: usize>(
-    root: &SMatrix<S, NE, NE>,
+/// The map from a change of an estimate to that of the nearest value of functions with these slopes, which are taken for
+/// constant: `J (J^T W J)^-1 J^T W`. None where it is not finite.
+pub(super) fn projection<S: Real, const NE: usize, const NZ: usize>(
     slopes: &SMatrix<S, NE, NZ>,
+    information: &Information<S, NE>,
 ) -> Option<SMatrix<S, NE, NE>> {
-    let one = S::one();
-    let in_deviations = solve(*root, *slopes).ok()?;
-    let independent = Information::from_variances(&SVector::<S, NE>::repeat(one)).ok()?;
-    let mut of_theta = independent.along(&SVector::zeros(), &in_deviations);
-    for (j, column) in slopes.column_iter().enumerate() {
-        // A component that no function depends on: any variance will do.
-        if column.iter().all(|&slope| slope == S::zero()) {
-            let mut unit = SVector::<S, NZ>::zeros();
-            unit[j] = one;
-            of_theta.absorb(&unit, S::zero(), one);
-        }
+    let mut projection = SMatrix::<S, NE, NE>::zeros();
+    for j in 0..NE {
+        let mut change = SVector::<S, NE>::zeros();
+        change[j] = -S::one();
+        projection.set_column(j, &(slopes * information.along(&change, slopes).solve().ok()?));
     }
-    let product = slopes * of_theta.covariance_root()?;
-    // There are at least as many functions as components of theta.
-    let mut padded = SMatrix::<S, NE, NE>::zeros();
-    product.column_iter().take(NE).enumerate().for_each(|(j, column)| padded.set_column(j, &column));
-    all_finite(&padded).then_some(padded)
+    all_finite(&projection).then_some(projection)
 }

@@ -222,6 +222,14 @@ where
         self.terms.as_ref().map_or_else(|| estimator.estimate(), |terms| self.unknown(extension, estimator, terms))
     }
 
+    /// The map from an error of the estimator's estimate to that of [`eta`](Self::eta), where unknowns depend on one
+    /// another; none where both are the same.
+    pub fn projection(&self) -> Option<SMatrix<M::Scalar, NE, NE>> {
+        let State { extension, estimator, .. } = &self.state;
+        let nearest = self.nearest(extension, estimator, self.terms.as_ref()?)?;
+        constrained::projection(&nearest.slopes, estimator.information()?)
+    }
+
     /// The terms of the last accepted output; none before the first sample.
     pub fn terms(&self) -> Option<&M::Terms> {
         self.terms.as_ref()

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use pebo_runtime::nalgebra::SVector;
+use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
     Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer, Uncertain,
     Within,
@@ -223,6 +223,19 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
         now.extension().coordinates(&now.theta())
     }
 
+    /// The same of the estimator, which takes unknowns that depend on one another for independent.
+    fn independent_now(&self) -> SVector<f64, N> {
+        let now = self.observer.now();
+        now.extension().coordinates(&now.model().theta(&pebo_runtime::Estimator::estimate(now.estimator())))
+    }
+
+    /// The map from an error of the one to an error of the other, where they differ.
+    fn projection_now(&self) -> Option<SMatrix<f64, N, N>> {
+        let now = self.observer.now();
+        let (_, map) = now.extension().parts();
+        Some(map * now.projection()? * map.try_inverse()?)
+    }
+
     /// True where no sample of a late output has become whole: that is no innovation.
     fn is_pending(&self, innovation: &Innovation<f64, N>) -> bool {
         matches!(self.observer, Running::Late(_)) && innovation.value.iter().all(|value| *value == 0.0)
@@ -312,7 +325,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
             gate.admit(&self.observer.innovation(y, u, dt)?)?;
         }
         let estimate = if self.uncertainty.is_some() {
-            let before = self.observer.now().terms().map(|before| (*before, self.coordinates_now()));
+            let before = self.observer.now().terms().map(|before| (*before, self.independent_now()));
             let estimate = self.observer.step(y, parted, u, dt)?;
             self.follow(before, y, u, dt);
             estimate
@@ -332,8 +345,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         let errors = match &self.uncertainty {
             Some(uncertainty) => {
                 let now = self.observer.now();
-                uncertainty
-                    .of((&self.coordinates_now(), now.terms()?), age, |z, y| now.model().recover_unbounded(z, y))?
+                let (at, through) = ((&self.coordinates_now(), now.terms()?), self.projection_now());
+                uncertainty.of(at, through.as_ref(), age, |z, y| now.model().recover_unbounded(z, y))?
             }
             None => self.is_certain.then(|| self.observer.now().standard_error_after(age))??,
         };
@@ -346,7 +359,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         let Surprise { square, determinant } = match (&self.uncertainty, now.terms()) {
             (Some(uncertainty), Some(before)) => {
                 let (after, u) = (&pad(y), &pad(u));
-                let interval = Interval { before, after, u, dt, z: self.coordinates_now() };
+                let interval = Interval { before, after, u, dt, z: self.independent_now() };
                 uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)?
             }
             _ if self.is_pending(&innovation) => return None,

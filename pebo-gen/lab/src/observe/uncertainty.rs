@@ -211,17 +211,19 @@ impl<const N: usize> Uncertainty<N> {
     }
 
     /// The standard errors of functions of z and a sample: by their change with each column of a root of the
-    /// covariance, to the side where that is less, as an angle may come round on the other. The last sample is `age`
-    /// seconds old, in which z has drifted.
+    /// covariance, to the side where that is less, as an angle may come round on the other. An error of z is mapped by
+    /// `through`, if there is such a map. The last sample is `age` seconds old, in which z has drifted.
     pub(crate) fn of(
         &self,
         (z, y): (&SVector<f64, N>, &SVector<f64, N>),
+        through: Option<&SMatrix<f64, N, N>>,
         age: f64,
         value: impl Fn(&SVector<f64, N>, &SVector<f64, N>) -> SVector<f64, N>,
     ) -> Option<SVector<f64, N>> {
         let middle = value(z, y);
         let mut squares = SVector::<f64, N>::zeros();
         for (error, noise) in self.columns(age)? {
+            let error = through.map_or(error, |through| through * error);
             let sides = [value(&(z + error), &(y + noise)) - middle, value(&(z - error), &(y - noise)) - middle];
             for (place, square) in squares.iter_mut().enumerate() {
                 let [above, below] = sides.each_ref().map(|side| side[place].abs());
