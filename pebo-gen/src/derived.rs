@@ -84,7 +84,7 @@ impl Derived {
         if let Some(best) = best {
             let mut best = search.candidates.swap_remove(best);
             if let Some(first) = best.derivation.diagnostics.first_mut() {
-                *first = search.declare(first.clone());
+                *first = search.declare(&best.plant.arena, first.clone());
             }
             return Ok(Self { model, plant: best.plant, derivation: best.derivation });
         }

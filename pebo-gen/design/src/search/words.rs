@@ -259,8 +259,13 @@ impl Search {
         diagnostic.help(self.help().unwrap_or_else(|| general.to_owned()))
     }
 
-    /// The refusal of the best transform, with the declarations with which one is accepted.
-    pub fn declare(&self, refusal: Diagnostic) -> Diagnostic {
+    /// The refusal of the best transform, with the declarations with which one is accepted; a direction of its unknowns
+    /// in terms of the states, where a symmetry is known.
+    pub fn declare(&self, arena: &Arena, refusal: Diagnostic) -> Diagnostic {
+        let refusal = match &self.symmetry {
+            Some(symmetry) if refusal.code == Code::NeverIdentifiable => refusal.label(symmetry.sentence(arena)),
+            _ => refusal,
+        };
         let noted = self.declared.iter().map(declared).fold(refusal, Diagnostic::note);
         match self.help() {
             Some(help) => noted.help(help),

@@ -253,6 +253,9 @@ impl<const N: usize> Uncertainty<N> {
         let mut columns: Vec<(SVector<f64, N>, SVector<f64, N>)> = Vec::new();
         // By pivots, largest share first: the rest of a singular matrix is rounding.
         let whole: Vec<f64> = (0..2 * N).map(|i| left[i][i]).collect();
+        if whole.iter().any(|variance| !variance.is_finite()) {
+            return None;
+        }
         let mut open: Vec<usize> = (0..2 * N).filter(|i| whole[*i] > 0.0).collect();
         while let Some(place) =
             open.iter().copied().max_by(|a, b| (left[*a][*a] / whole[*a]).total_cmp(&(left[*b][*b] / whole[*b])))
@@ -313,15 +316,20 @@ impl<const N: usize> Uncertainty<N> {
         })
     }
 
-    /// The derivative of a function by the outputs, over a standard deviation of their sensors to either side.
+    /// The derivative of a function by the outputs, over a standard deviation of their sensors to either side; to one
+    /// side where the function has no value on the other, as a root near 0.
     fn slopes(&self, y: &SVector<f64, N>, value: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
         let mut slopes = SMatrix::<f64, N, N>::zeros();
         for (output, &deviation) in self.sensors.iter().enumerate().filter(|(_, deviation)| **deviation > 0.0) {
-            let [mut above, mut below] = [*y; 2];
-            above[output] += deviation;
-            below[output] -= deviation;
-            let between = above[output] - below[output];
-            slopes.set_column(output, &((value(&above) - value(&below)) / between));
+            let side = |sign: f64| {
+                let mut beside = *y;
+                beside[output] += sign * deviation;
+                let value = value(&beside);
+                value.iter().all(|entry| entry.is_finite()).then_some((beside[output], value))
+            };
+            let here = || (y[output], value(y));
+            let (above, below) = (side(1.0).unwrap_or_else(here), side(-1.0).unwrap_or_else(here));
+            slopes.set_column(output, &((above.1 - below.1) / (above.0 - below.0)));
         }
         slopes
     }

@@ -226,8 +226,11 @@ impl Module<'_> {
         let (sensors, built) = match &settings.errors_in_variables {
             Some(sensors) => {
                 let sensors = sensors.iter().map(&mut one);
-                let list = quote!(let sensors = SVector::from([#(#sensors),*]););
-                (Some(list), quote!(#built?.with_errors_in_variables(&sensors)))
+                let before = quote! {
+                    let sensors = SVector::from([#(#sensors),*]);
+                    let observer = #built?;
+                };
+                (Some(before), quote!(observer.with_errors_in_variables(&sensors)))
             }
             None => (None, built),
         };

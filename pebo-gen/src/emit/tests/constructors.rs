@@ -182,11 +182,12 @@ fn noise_in_the_factor_has_the_deviations_of_the_sensors() {
     let text = tuned(&given);
     let expected = [
         "let sensors = SVector::from([0.1, 0.2]);",
-        "let observer = Tuned::with_regression(model, estimator, sampled, chi_0)?.with_errors_in_variables(&sensors)?;",
+        "let observer = Tuned::with_regression(model, estimator, sampled, chi_0)?;",
+        "let observer = observer.with_errors_in_variables(&sensors)?;",
         "observer.rebasing(1)",
     ];
     let found = statements(&text);
-    assert_eq!(found[found.len() - 3..], expected);
+    assert_eq!(found[found.len() - 4..], expected);
     refuse_changed(&given, &[("[0.1, 0.2]", "[0.1, 0.3]"), (".with_errors_in_variables(&sensors)?", "")]);
 }
 

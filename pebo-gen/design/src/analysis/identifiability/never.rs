@@ -3,6 +3,8 @@
 //! In: directions of the unknowns that are unobservable in every derivative of the regression. Out: the diagnostic, with
 //! the combinations of the states that the outputs show, where these directions move the states by constants.
 
+use std::collections::BTreeSet;
+
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::linear::rank::null_vectors;
@@ -68,8 +70,8 @@ pub(super) fn never(
     }
 }
 
-/// The sentence on the combinations of states that the outputs show; none where the directions move a state by what is
-/// no constant.
+/// The sentence on what the outputs show of the states that move along these directions: combinations of them where they
+/// move by constants, else combinations of components of phi where these do; none where neither do.
 fn observable_states(
     plant: &Plant,
     domain: &Domain,
@@ -77,10 +79,9 @@ fn observable_states(
     left_inverse: &LeftInverse,
 ) -> Option<String> {
     let arena = &plant.arena;
-    let is_constant = |expr: &Expr| {
-        let symbols = arena.symbols_of(&[*expr]);
-        symbols.iter().all(|symbol| plant.parameters.iter().any(|parameter| parameter.symbol == *symbol))
-    };
+    let constants: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+    let are_constant =
+        |rows: &[Vec<Expr>]| rows.iter().flatten().all(|expr| arena.symbols_of(&[*expr]).is_subset(&constants));
     let moved = |formula: Expr, direction: &[Expr]| {
         let slopes = plant.z.iter().zip(direction).map(|(z, d)| arena.mul(arena.derivative(formula, *z), *d));
         shortest(arena, domain, arena.sum(slopes))
@@ -89,19 +90,23 @@ fn observable_states(
         .iter()
         .map(|direction| left_inverse.x.iter().map(|(_, formula)| moved(*formula, direction)).collect())
         .collect();
-    if !rows.iter().flatten().all(is_constant) {
-        return None;
-    }
     let columns: Vec<usize> =
         (0..left_inverse.x.len()).filter(|column| rows.iter().any(|row| !arena.is_zero(row[*column]))).collect();
     let states: Vec<Symbol> = columns.iter().map(|column| left_inverse.x[*column].0).collect();
     let rows: Vec<Vec<Expr>> = rows.iter().map(|row| columns.iter().map(|column| row[*column]).collect()).collect();
-    let shown = null_vectors(arena, domain, &rows, states.len()).ok()?;
-    let combination = |factors: &Vec<Expr>| {
-        let terms = factors.iter().zip(&states).map(|(factor, state)| arena.mul(*factor, arena.of_symbol(*state)));
-        arena.print(shortest(arena, domain, arena.sum(terms)))
+    let (rows, functions) = if are_constant(&rows) {
+        (rows, states.iter().map(|state| arena.of_symbol(*state)).collect())
+    } else {
+        (directions.to_vec(), plant.transform())
     };
-    let shown: Vec<String> = shown.iter().map(combination).collect();
+    if !are_constant(&rows) {
+        return None;
+    }
+    let shown = null_vectors(arena, domain, &rows, functions.len()).ok()?;
+    let combined = |factors: &Vec<Expr>| shortest(arena, domain, arena.dot(factors, &functions));
+    // Of the other states a component of phi may be a function alone.
+    let of_these = |shown: &Expr| arena.symbols_of(&[*shown]).iter().any(|symbol| states.contains(symbol));
+    let shown: Vec<String> = shown.iter().map(combined).filter(of_these).map(|shown| arena.print(shown)).collect();
     let names: Vec<String> = states.iter().map(|state| arena.name(*state)).collect();
     let names = listed(names.iter().map(String::as_str));
     Some(if shown.is_empty() {
