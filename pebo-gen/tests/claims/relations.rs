@@ -194,4 +194,10 @@ pub(super) const RELATIONS: &[Row] = &[
         "x: [a, b]\ny: [s]\nu: [v]\nf_x: {a: 0, b: 0}\ng_y: {s: a + v*b + v^2*a*b}\nphi: [a, b, a*b]",
         Accepted("static linear excitation"),
     ),
+    (
+        "value of a state that is a quotient of components of phi",
+        "x: [a, b]\ny: [s, r]\nu: [v]\nassume: [a > 0, b > 0]\nf_x: {a: 0, b: 0}\nf_y: {s: a*b*v - s}\ng_y: {r: b*v}\n\
+         phi: [a, a*b]",
+        Accepted("implicit linear instant"),
+    ),
 ];

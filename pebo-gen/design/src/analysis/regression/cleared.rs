@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::equation::{Equation, outputs_of};
+use super::implicit;
 use super::premises::Premises;
 use super::separation::is_separable;
 use crate::analysis::affine::{self, Row};
@@ -181,6 +182,10 @@ fn forms(premises: &Premises<'_>, identity: Expr) -> Vec<Expr> {
     let (arena, domain) = (premises.arena(), premises.domain);
     let value = output_value(premises.plant, identity);
     let mut forms = cleared(arena, domain, identity, &premises.plant.hidden());
+    // A state may be a quotient of components of phi.
+    let divisor = premises.at_left_inverse(identity).and_then(|in_z| implicit::factor(premises, in_z).ok()?);
+    let of_z = divisor.filter(|divisor| arena.depends_on(*divisor, &premises.unknown()));
+    forms.extend(of_z.map(|divisor| arena.mul(identity, premises.at_phi(divisor))));
     forms.retain(|form| match &value {
         Some(value) => is_zero(arena, arena.substitute(*form, value), &domain.without_equations()),
         None => premises.vanishes(*form),
