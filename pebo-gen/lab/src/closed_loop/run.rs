@@ -86,7 +86,8 @@ impl Scenario {
             let table = &machine.table;
             show(sample, Snapshot { table, errors, is_row });
             if is_report {
-                watch.look(table[TIME], &machine.driver.observer.component_information());
+                let information = machine.driver.observer.component_information();
+                watch.look(table[TIME], &information, predicted.as_deref());
                 certain.look(table[TIME], predicted.as_deref());
                 expected.add(table[TIME], predicted);
             }

@@ -7,8 +7,9 @@
 //! G' = -beta G + Phi^T Phi        1 - R^2 of component i = 1/(G_ii (G^-1)_ii)
 //! ```
 //!
-//! which is the share of a component's data that the other components do not explain. The standard error of each state
-//! beside the wanted one says more, but needs sensors of known standard deviations (`certainty`).
+//! which is the share of a component's data that the other components do not explain. It says little where the extension
+//! starts again from the estimate and data of long ago are almost all of one component. So standard errors count too,
+//! where they are predicted: data that halve that of each state determine the unknown.
 //!
 //! Source: Belsley, Kuh, Welsch, *Regression diagnostics*, 1980, chapter 3 (variance inflation).
 
@@ -141,10 +142,16 @@ pub(crate) struct ComponentInformation {
     data: Vec<f64>,
 }
 
+/// The share of each state's first standard error that is left where data determine the unknown. A sum of two unknowns
+/// leaves 0.7 of the error of either.
+const TOLD: f64 = 0.5;
+
 /// The excitation as time goes on.
 #[derive(Debug, Default)]
 pub(crate) struct ExcitationMonitor {
     state: State,
+    /// The first standard errors of the states.
+    first: Option<Vec<f64>>,
     weakest: usize,
     /// The variance of each component that was just enough when all were determined first, in units of the noise.
     enough: Vec<f64>,
@@ -159,11 +166,15 @@ enum State {
 }
 
 impl ExcitationMonitor {
-    /// Takes the information at this instant.
+    /// Takes the information at this instant, and the standard errors of the states where these are predicted.
     ///
     /// Loss is judged by a component's data, and not by its share alone: where the extension starts again from the
     /// estimate, old data of a state that dies out become ever more certain, and all others small beside them.
-    pub(crate) fn look(&mut self, t: f64, information: &ComponentInformation) {
+    pub(crate) fn look(&mut self, t: f64, information: &ComponentInformation, errors: Option<&[f64]>) {
+        let is_told = errors
+            .zip(self.first.as_ref())
+            .is_some_and(|(errors, first)| errors.iter().zip(first).all(|(error, first)| *error <= TOLD * first));
+        self.first = self.first.take().or_else(|| errors.map(<[f64]>::to_vec));
         let least = |values: &mut dyn Iterator<Item = f64>| {
             values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
@@ -174,9 +185,10 @@ impl ExcitationMonitor {
         match self.state {
             State::NotYet => {
                 self.weakest = weakest;
-                if share >= ENOUGH {
+                if share >= ENOUGH || is_told {
                     self.state = State::Converged(t);
-                    self.enough = information.data.iter().map(|data| 1.0 / (data * ENOUGH)).collect();
+                    let enough = information.data.iter().map(|data| 1.0 / (data * ENOUGH));
+                    self.enough = if share >= ENOUGH { enough.collect() } else { Vec::new() };
                 }
             }
             State::Converged(_) if is_lost && !self.enough.is_empty() => {
@@ -239,7 +251,7 @@ mod tests {
             // The regressor turns between 10 and 20 s, and stands at 0.5 before and after.
             let angle = 0.5 + (t - 10.0).clamp(0.0, 10.0);
             information.add(&row(angle), 0.1);
-            watch.look(t, &information.component_information());
+            watch.look(t, &information.component_information(), None);
             states.push(watch.excitation(&names()));
         }
         assert!(matches!(&states[99], Excitation::NotYet { .. }), "{:?}", states[99]);
@@ -254,10 +266,21 @@ mod tests {
     }
 
     #[test]
+    fn standard_errors_that_data_halve_are_enough() {
+        let (mut information, mut watch) = (Gramian::<3>::new(2, 0.0), ExcitationMonitor::default());
+        information.add(&row(0.3), 1.0);
+        let mut after = |errors: [f64; 2]| {
+            watch.look(1.0, &information.component_information(), Some(&errors));
+            matches!(watch.excitation(&names()), Excitation::Converged { .. })
+        };
+        assert_eq!([[2.0, 4.0], [0.1, 3.0], [0.1, 2.0]].map(&mut after), [false, false, true]);
+    }
+
+    #[test]
     fn a_component_without_data_is_named() {
         let (mut information, mut watch) = (Gramian::<3>::new(2, 0.0), ExcitationMonitor::default());
         information.add(&row(0.0), 1.0);
-        watch.look(0.0, &information.component_information());
+        watch.look(0.0, &information.component_information(), None);
         assert_eq!(watch.excitation(&names()), Excitation::NotYet { weakest: "theta2".to_owned() });
     }
 }

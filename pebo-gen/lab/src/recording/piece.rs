@@ -283,8 +283,8 @@ impl<'a> Piece<'a> {
     /// Evaluates excitation and certainty.
     fn look(&mut self) {
         let t = self.since_start(self.taken);
-        self.watch.look(t, &self.driver.observer.component_information());
         let predicted = self.driver.standard_errors();
+        self.watch.look(t, &self.driver.observer.component_information(), predicted.as_deref());
         self.certain.look(t, predicted.as_deref());
         self.expected.add(t, predicted);
     }

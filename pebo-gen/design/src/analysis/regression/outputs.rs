@@ -30,8 +30,9 @@ pub(super) fn completed(pool: &Pool<'_>, mut given: Trial) -> Trial {
         }
     }
     let stands_alone = |equation: &Equation, output: usize| equation.outputs == [output];
-    let by_value = |output| given.equations.iter().any(|e| e.is_instant(premises) && stands_alone(e, output));
-    let moving = used.iter().copied().filter(|output| plant.y[*output].moves_with_value() && !by_value(*output));
+    let own = |output| given.equations.iter().filter(move |equation| stands_alone(equation, output));
+    let is_by_value = |output| own(output).count() > 0 && own(output).all(|equation| equation.is_instant(premises));
+    let moving = used.iter().copied().filter(|output| plant.y[*output].moves_with_value() && !is_by_value(*output));
     let moving = moving.filter(|_| plant.relation_form.is_none());
     let (mut values, mut curved) = (Vec::new(), Vec::new());
     for output in moving {
