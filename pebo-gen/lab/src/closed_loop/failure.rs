@@ -43,10 +43,12 @@ pub enum Failure {
         /// Its time constant there, in seconds.
         constant: f64,
     },
-    /// The observer refused a sample.
+    /// The observer refused samples until the end.
     Refused {
-        /// The time, in seconds.
+        /// The time of the first of them, in seconds.
         at: f64,
+        /// Their number.
+        samples: u64,
         /// The fault.
         fault: Fault,
     },
@@ -78,8 +80,9 @@ impl Failure {
                  into the other formulas), or simulate a shorter time"
             }
             Self::Refused { fault: Fault::Estimate, .. } => {
-                "the estimate left the domain of `phi_left`: bound the states, as `within: {lower: 0}` under `observer`, or \
-                 let it start nearer, by `extension`"
+                "the estimate left the domain of `phi_left`: say under `observer` how far from 0 states may be at the \
+                 start, as `start: {x: 0.2}`, where ten times their size is too far; bound the states, as \
+                 `within: {lower: 0}`; or let it start nearer, by `extension`"
             }
             Self::Refused { fault: Fault::Output { .. } | Fault::Input { .. }, .. } => {
                 "a sample is no finite number: check `noise`, `bias` and the control law"
@@ -117,10 +120,19 @@ impl fmt::Display for Failure {
                 short(*at),
                 short(*constant)
             ),
-            Self::Refused { at, fault } => write!(f, "the observer refused the sample at t = {at} s: {fault}"),
+            Self::Refused { at, samples, fault } => write!(f, "{}: {fault}", refused(*at, *samples)),
             Self::Stopped { at } => write!(f, "the run reached its limit at t = {at} s"),
         }
     }
 }
 
 impl std::error::Error for Failure {}
+
+/// The refused samples, in words.
+pub(super) fn refused(at: f64, samples: u64) -> String {
+    if samples > 1 {
+        format!("the observer refused all {samples} samples from t = {at} s on")
+    } else {
+        format!("the observer refused the sample at t = {at} s")
+    }
+}

@@ -178,7 +178,7 @@ impl<'a> LoopState<'a> {
     /// The loop at its first sample, before the first control.
     pub(crate) fn start(scenario: &'a Scenario) -> Result<Self, Failure> {
         let layout = &scenario.layout;
-        let refused = |fault| Failure::Refused { at: 0.0, fault };
+        let refused = |fault| Failure::Refused { at: 0.0, samples: 1, fault };
         let positions = layout.signals.clone().zip(&scenario.signals);
         let mut machine = Self {
             scenario,
@@ -330,7 +330,11 @@ impl<'a> LoopState<'a> {
             *angle = unwrapped(*angle, 0.0, *period);
         }
         match self.driver.arrive(y, u, step, hat) {
-            Err(fault) if self.driver.has_given_up() => Err(Failure::Refused { at: before[TIME], fault }),
+            Err(fault) if self.driver.has_given_up() => {
+                let samples = self.driver.refused();
+                let first = sample.saturating_sub(samples.saturating_sub(1));
+                Err(Failure::Refused { at: self.scenario.timing.at(first), samples, fault })
+            }
             _ => Ok(()),
         }
     }

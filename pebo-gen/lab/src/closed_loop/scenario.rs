@@ -17,7 +17,7 @@ use pebo_runtime::Fault;
 
 use super::baseline::{NamedBaseline, ResolvedBaseline};
 use super::estimator::{estimator_text, overridden};
-use super::failure::Failure;
+use super::failure::{Failure, refused};
 use super::layout::{Layout, baseline_estimate, estimate};
 use super::ode::switching::{SwitchPrograms, Switches};
 use super::panels::Panels;
@@ -160,7 +160,7 @@ impl Scenario {
             _ => Code::SimulationFailed,
         };
         let help = match failure {
-            Failure::Refused { at, fault: Fault::Estimate } if *at <= 0.0 => self.restart.clone(),
+            Failure::Refused { at, fault: Fault::Estimate, .. } if *at <= 0.0 => self.restart.clone(),
             Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
                 format!(
                     "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
@@ -169,8 +169,8 @@ impl Scenario {
             _ => failure.help().to_owned(),
         };
         let message = match failure {
-            Failure::Refused { at, fault } => {
-                format!("the observer refused the sample at t = {at} s: {}", self.design.names.words(*fault))
+            Failure::Refused { at, samples, fault } => {
+                format!("{}: {}", refused(*at, *samples), self.design.names.words(*fault))
             }
             _ => failure.to_string(),
         };

@@ -118,6 +118,11 @@ impl ObserverDriver {
         self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
     }
 
+    /// The number of samples that were refused since the last accepted one.
+    pub(crate) fn refused(&self) -> u64 {
+        self.refused
+    }
+
     /// True if a sample has been accepted.
     pub(crate) fn has_started(&self) -> bool {
         self.started
