@@ -157,6 +157,13 @@ const CASES: &[Case] = &[
         most: 2,
     },
     Case {
+        from: "heading, bias of its gyroscope, speed and wind from positions: by parts with sine and cosine",
+        lines: "x: [psi, b, V, we, wn]\ny: [e, n]\nu: [gz]\nangles: {psi: 2*pi}\nassume: [V > 0]\n\
+                f_x: {psi: gz - b, b: 0, V: 0, we: 0, wn: 0}\nf_y: {e: V*sin(psi) + we, n: V*cos(psi) + wn}",
+        class: Class::Gpebo,
+        most: 7,
+    },
+    Case {
         from: "made from its transform: p and 2*s - p^2, of which the rates of s and p^2 alone do not close",
         lines: "x: [p, s]\ny: [q]\nu: [v]\n\
                 f_x: {p: v - q*p + 2*s - p^2, s: v*p + 2*s*p - p^3 - 2*q*s}\nf_y: {q: 2*v*p + 2*s - p^2}",

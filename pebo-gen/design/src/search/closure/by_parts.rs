@@ -4,7 +4,7 @@
 //! Where a constant c multiplies the rate of w in another rate, c*w is taken into the component instead, as the
 //! constant has no rate: `y'' = -a*y - b*y' + u` with unknown a and b, and y measured, has `z = y' + b*y` with
 //! `z' = -a*y + u`. The rates then consist of the components, and of products of constants and known signals, which are
-//! components too.
+//! components too. A heading of which the rates of a position show sine and cosine has the bias of its gyroscope so.
 //!
 //! This is how an observable linear plant comes to its observer form, in which its unknown coefficients multiply
 //! measured signals alone (Marino and Tomei 1992).
@@ -167,8 +167,22 @@ impl ByParts<'_, '_> {
         self.problem.arena.symbols_of(&[product]).is_subset(self.constants)
     }
 
+    /// The terms of a formula; functions of hidden symbols are symbols themselves, where they do not cancel.
     fn terms(&self, formula: Expr) -> Result<Option<Vec<Term>>, Obstacle> {
-        terms(self.problem, formula, &self.problem.hidden)
+        let (arena, hidden) = (self.problem.arena, &self.problem.hidden);
+        let plain = terms(self.problem, formula, hidden)?;
+        if plain.is_some() {
+            return Ok(plain);
+        }
+        let is_call = |part: &Expr| matches!(arena.node(*part), Node::Call(..)) && arena.depends_on(*part, hidden);
+        let calls = arena.postorder(&[formula]).into_iter().filter(is_call);
+        let named: Vec<(Expr, Symbol)> = calls.map(|call| (call, arena.generated(&arena.print(call)))).collect();
+        let opaque =
+            arena.replace(formula, &named.iter().map(|(call, name)| (*call, arena.of_symbol(*name))).collect());
+        let hidden = hidden.iter().copied().chain(named.iter().map(|(_, name)| *name)).collect();
+        let calls = named.iter().map(|(call, name)| (*name, *call)).collect();
+        let restored = |term: Term| Term { product: arena.substitute(term.product, &calls), ..term };
+        Ok(terms(self.problem, opaque, &hidden)?.map(|terms| terms.into_iter().map(restored).collect()))
     }
 
     /// The polynomials in the constants that multiply known signals which are independent of each other.
