@@ -126,6 +126,19 @@ fn more_components_than_states_recover_the_states_everywhere() {
 }
 
 /// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
+/// Beside a heading that is known by its sine and cosine, two rows hold the second coordinate, and one of them does
+/// wherever the vehicle heads.
+#[test]
+fn states_beside_known_ones_are_recovered_by_all_components_that_hold_them() {
+    let plant = derived(
+        "x: [px, py, th]\ny: [s]\nu: [v, w]\nangles: {th: 2*pi}\nf_x: {px: v*cos(th), py: v*sin(th), th: w}\n\
+         g_y: {s: px^2 + py^2 + v*px}\n\
+         phi: [px, cos(th), sin(th), px^2 + py^2, px*cos(th) + py*sin(th), py*cos(th) - px*sin(th)]",
+    );
+    assert_eq!(plant.derivation.outcome, Outcome::Accepted, "{:?}", plant.derivation.diagnostics);
+    assert!(plant.derivation.conditions.is_empty(), "{:?}", plant.derivation.conditions);
+}
+
 #[test]
 fn points_without_a_value_refute_nothing() {
     let plant = derived("x: [p]\ny: [x]\nu: [u]\nf_x: {p: u + p*(sqrt(x)^2 - abs(x))}\nf_y: {x: p}\nphi: [p]");

@@ -87,7 +87,7 @@ impl<'a> StateSolver<'a> {
         let written = self.as_written.get(&state).into_iter().flatten().copied().filter(right);
         // A formula that has a value wherever the plant has ends the search.
         let is_total = found.is_some_and(|formula| open_conditions(self.plant, self.domain, formula).is_empty());
-        let squares = (!is_total).then(|| self.least_squares.get_or_init(|| by_least_squares(self.plant, self.domain)));
+        let squares = (!is_total).then(|| self.least_squares.get_or_init(|| self.by_least_squares()));
         let squares = squares.and_then(|squares| squares.get(&state)).copied().filter(right);
         let forms =
             found.into_iter().chain(written).chain(squares).map(|formula| shortest(arena, self.domain, formula));
@@ -99,6 +99,25 @@ impl<'a> StateSolver<'a> {
             },
         };
         Ok(formula.map(|formula| shortest(arena, self.domain, formula)))
+    }
+
+    /// Least-squares solutions: for all states, or else for those beside others that have a formula with a value wherever
+    /// the plant has.
+    fn by_least_squares(&self) -> BTreeMap<Symbol, Expr> {
+        let whole = by_least_squares(self.plant, self.domain, &BTreeMap::new());
+        if !whole.is_empty() {
+            return whole;
+        }
+        let is_right = |state: Symbol, formula: Expr| {
+            open_conditions(self.plant, self.domain, formula).is_empty()
+                && check(self.plant, self.domain, state, formula).1.is_zero()
+        };
+        let formula = |state: Symbol| {
+            let found = self.by_worth(self.candidates(state)).into_iter().find(|formula| is_right(state, *formula));
+            found.map(|formula| (state, formula))
+        };
+        let known = self.plant.x.iter().filter_map(|state| formula(state.symbol)).collect();
+        by_least_squares(self.plant, self.domain, &known)
     }
 
     /// The proposals of the class, the shortest first, and the solutions of the transform alone.
