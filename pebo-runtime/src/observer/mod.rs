@@ -39,7 +39,8 @@ use rebasing::Rebasing;
 ///
 /// A call that returns a [`Fault`] has changed nothing, to the last bit. The next good sample goes on from the last
 /// accepted one, with the time since that one as `dt`; if the input changed meanwhile, a [`Gap`](crate::Gap) has the
-/// mean input. [`Limits`](crate::Limits) find samples that are finite but out of range or saturated, before they get
+/// mean input. A sample that was refused because its estimate has no state, [`Fault::Estimate`], may be given to
+/// [`learn`](Self::learn) instead. [`Limits`](crate::Limits) find samples that are finite but out of range or saturated, before they get
 /// here. The whole state can be saved and restored: [`state`](Self::state).
 ///
 /// # Unknowns that depend on one another
@@ -80,6 +81,8 @@ pub struct Observer<
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
     /// The standard deviations of the sensors and the correction by them, where their noise is in the factor too.
     correction: Option<Correction<Self, M, E, R, NX, NY, NU, NZ, NR, NE>>,
+    /// True while a sample is taken whether or not the state then has a value.
+    is_learning: bool,
 }
 
 /// Everything that a step of an [`Observer`] changes, gains and filter included.
@@ -138,7 +141,7 @@ where
         }
         let extension = M::Extension::new(chi_0);
         let state = State { y: None, extension, regression, estimator, since: 0 };
-        Ok(Self { model, state, terms: None, rebasing: None, correction: None })
+        Ok(Self { model, state, terms: None, rebasing: None, correction: None, is_learning: false })
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -161,6 +164,20 @@ where
         check(&y, &u[0], dt)?;
         check(&y, &u[1], dt)?;
         self.advance(&self.unwrapped(&y), u.each_ref(), dt).map(M::X::from)
+    }
+
+    /// Takes a sample as [`step`](Self::step) does, also where the state then has no value: what a step refuses with
+    /// [`Fault::Estimate`]. The unknown is estimated all the same, and a later step returns a state again, while an
+    /// observer that refuses all such samples learns nothing that would bring its estimate back. Meanwhile the
+    /// [`estimate`](Self::estimate) is not finite.
+    ///
+    /// # Errors
+    /// A [`Fault`] as of the step, but for that one unless it is the first sample; the observer is then exactly as before.
+    pub fn learn(&mut self, y: impl Into<M::Y>, u: impl Into<M::U>, dt: M::Scalar) -> Result<(), Fault> {
+        self.is_learning = true;
+        let taken = self.step(y, u, dt);
+        self.is_learning = false;
+        taken.map(|_| ())
     }
 
     /// Starts again before the first sample, as after an outage that no `dt` can bridge: extension at `chi_0`, filters
@@ -414,7 +431,7 @@ where
         terms: &M::Terms,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let estimate = self.state_of(extension, estimator, terms);
-        if all_finite(&estimate) { Ok(estimate) } else { Err(Fault::Estimate) }
+        if all_finite(&estimate) || self.is_learning { Ok(estimate) } else { Err(Fault::Estimate) }
     }
 
     /// Keeps a moved state if all of it and its estimate are finite.

@@ -42,9 +42,18 @@ pub(super) fn whole(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice,
 
 /// Chooses among solutions.
 pub(super) fn choose(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice, Obstacle> {
-    let all = &solutions[..solutions.len().min(problem.x.len() + MOST_BEYOND)];
+    let mut all: Vec<Expr> = Vec::new();
+    for solution in solutions {
+        if all.len() == problem.x.len() + MOST_BEYOND {
+            break;
+        }
+        // One that is free of x, as a sum of roots that cancel, says nothing.
+        if !is_affine_in(problem, &[*solution], &[])? {
+            all.push(*solution);
+        }
+    }
     let mut few: Vec<Expr> = Vec::new();
-    for solution in all {
+    for solution in &all {
         let more = [few.as_slice(), &[*solution]].concat();
         if rank_of_gradients(problem, &more)? == more.len() {
             few = more;
@@ -70,13 +79,13 @@ pub(super) fn choose(problem: &Problem<'_>, solutions: &[Expr]) -> Result<Choice
         let affine = affine(&few)?;
         return Ok(Choice { transforms: vec![few], rank, affine });
     }
-    if !affine(all)? {
+    if !affine(&all)? {
         // All of them may be related, which is a regression as well.
-        let together = (all.len() <= MOST_IN_SUBSETS).then(|| all.to_vec());
+        let together = (all.len() <= MOST_IN_SUBSETS).then(|| all.clone());
         return Ok(Choice { transforms: [few].into_iter().chain(together).collect(), rank, affine: false });
     }
     // The longest is dropped first: the shortest that suffice are left.
-    let mut kept = all.to_vec();
+    let mut kept = all.clone();
     for solution in all.iter().rev() {
         let without: Vec<Expr> = kept.iter().copied().filter(|e| e != solution).collect();
         if without.len() >= rank && rank_of_gradients(problem, &without)? == rank && affine(&without)? {

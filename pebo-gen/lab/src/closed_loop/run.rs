@@ -117,6 +117,7 @@ impl Scenario {
             faults: machine.driver.faults().clone(),
             dropped: machine.driver.dropped(),
             parted: machine.driver.parted(),
+            stateless: machine.driver.stateless(),
             restarts: machine.driver.restarts(),
             outside: assumed.outside(),
             surprise,

@@ -34,6 +34,8 @@ pub(crate) struct ObserverDriver {
     dropped: u64,
     /// The samples that lacked outputs.
     parted: u64,
+    /// Those at which there was no estimate.
+    stateless: u64,
     /// Samples since an innovation was judged.
     unjudged: u64,
     /// Samples from one judged innovation to the next.
@@ -58,6 +60,7 @@ impl ObserverDriver {
             faults: Faults::default(),
             dropped: 0,
             parted: 0,
+            stateless: 0,
             unjudged: 0,
             interval: JUDGING_INTERVAL,
             surprise: (0.0, 0),
@@ -99,10 +102,14 @@ impl ObserverDriver {
                 })
             }
         };
-        let Err(fault) = taken else {
-            (self.gap, self.started, self.refused) = (None, true, 0);
-            self.parted += u64::from(is_parted);
-            return Ok(());
+        let fault = match taken {
+            Ok(has_state) => {
+                (self.gap, self.started, self.refused) = (None, true, 0);
+                self.parted += u64::from(is_parted);
+                self.stateless += u64::from(!has_state);
+                return Ok(());
+            }
+            Err(fault) => fault,
         };
         self.faults.add(fault, &self.names);
         // Samples out of the range of their sensor say nothing of the observer, however many there are.
@@ -152,6 +159,11 @@ impl ObserverDriver {
     /// The samples that were taken without some of their outputs.
     pub(crate) fn parted(&self) -> u64 {
         self.parted
+    }
+
+    /// The samples that were taken while there was no estimate.
+    pub(crate) fn stateless(&self) -> u64 {
+        self.stateless
     }
 
     /// The normalised square of innovations, on average over samples and rows: 1 where model and numbers are right.

@@ -26,8 +26,9 @@ use super::uncertainty::{Interval, NoiseModel, Surprise, Uncertainty};
 /// An observer of any size.
 pub(crate) trait DynObserver: fmt::Debug {
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. An
-    /// output that is missing is NaN, where [`admits_partial`](Self::admits_partial).
-    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault>;
+    /// output that is missing is NaN, where [`admits_partial`](Self::admits_partial). False if the sample was taken and
+    /// there are no estimates: the left inverse has no value.
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<bool, Fault>;
 
     /// True if a sample may lack outputs.
     fn admits_partial(&self) -> bool;
@@ -126,13 +127,26 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Running<X, K, N
         }
     }
 
-    /// A step; with `parted`, outputs that have these rows may be missing.
-    fn step(&mut self, y: &[f64], parted: Option<[usize; N]>, u: &[f64], dt: f64) -> Result<SVector<f64, N>, Fault> {
-        match (self, parted) {
+    /// A step; with `parted`, outputs that have these rows may be missing. None where the state has no value, and the
+    /// sample is taken all the same.
+    fn step(
+        &mut self,
+        y: &[f64],
+        parted: Option<[usize; N]>,
+        u: &[f64],
+        dt: f64,
+    ) -> Result<Option<SVector<f64, N>>, Fault> {
+        let taken = match (&mut *self, parted) {
             (Self::OnTime(observer), Some(rows)) => observer.step_partly(pad(y), &rows, pad(u), dt),
             (Self::OnTime(observer), None) => observer.step(pad(y), pad(u), dt),
             (Self::Late(late), Some(_)) => late.step_partly(pad(y), pad(u), dt),
             (Self::Late(late), None) => late.step(pad(y), pad(u), dt),
+        };
+        match (self, taken) {
+            (Self::OnTime(observer), Err(Fault::Estimate)) if parted.is_none() && observer.terms().is_some() => {
+                observer.learn(pad(y), pad(u), dt).map(|()| None)
+            }
+            (_, taken) => taken.map(Some),
         }
     }
 
@@ -306,7 +320,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> fmt::Debug for 
 }
 
 impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for PaddedObserver<X, K, N> {
-    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
+    fn sample(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<bool, Fault> {
         if let Some(limits) = &self.limits {
             // A missing output is in no range: it is left out, or refused for that.
             let present = y.iter().map(|output| if output.is_nan() { 0.0 } else { *output }).collect::<Vec<_>>();
@@ -333,8 +347,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
             self.observer.step(y, parted, u, dt)?
         };
         self.waited = if y.iter().all(|output| output.is_nan()) { self.waited + dt } else { 0.0 };
-        hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
-        Ok(())
+        if let Some(estimate) = &estimate {
+            hat.copy_from_slice(&estimate.as_slice()[..hat.len()]);
+        }
+        Ok(estimate.is_some())
     }
 
     fn admits_partial(&self) -> bool {

@@ -329,6 +329,7 @@ impl<'a> Piece<'a> {
                 faults: self.driver.faults().clone(),
                 dropped: 0,
                 parted: self.driver.parted(),
+                stateless: self.driver.stateless(),
                 restarts: self.driver.restarts(),
                 outside: self.assumed.outside(),
                 surprise,

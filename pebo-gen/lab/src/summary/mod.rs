@@ -32,6 +32,8 @@ pub struct Summary {
     pub dropped: u64,
     /// The samples that were taken without some of their outputs.
     pub parted: u64,
+    /// The samples that were taken while the left inverse had no value, so that there was no estimate.
+    pub stateless: u64,
     /// The number of restarts of the model's observer after gaps that were too long.
     pub restarts: u64,
     /// The assumptions of the plant that did not hold throughout.
@@ -216,6 +218,9 @@ impl Summary {
         }
         if self.parted > 0 {
             line("in part", &format!("{} of {all} samples lack an output", self.parted));
+        }
+        if self.stateless > 0 {
+            line("no state", &format!("at {} of {all} samples, where the left inverse is not finite", self.stateless));
         }
         if self.dropped > 0 {
             line("dropped", &format!("{} of {all} samples", self.dropped));

@@ -7,6 +7,7 @@ mod expected;
 mod functions;
 mod kinds;
 mod late;
+mod learning;
 pub(crate) mod rebasing;
 mod sampling;
 mod storm;
