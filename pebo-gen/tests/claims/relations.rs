@@ -112,7 +112,7 @@ pub(super) const RELATIONS: &[Row] = &[
     (
         "two values that show the states at once",
         "x: [v, a]\ny: [s, n]\nu: [f]\nf_x: {v: f - a, a: f}\ng_y: {s: v + a, n: 2*a}\nphi: [v, a]",
-        Accepted("static linear instant"),
+        Accepted("gpebo static linear instant"),
     ),
     (
         "a value that is not affine stands by its rate",

@@ -44,13 +44,18 @@ struct Dependence {
     through: Vec<Symbol>,
 }
 
-/// Proves or refutes the cascade: the plain one, else, unless only that is wanted, the generalised one.
+/// Proves or refutes the cascade: the plain one, else, unless only that is wanted, the generalised one. A generalised one
+/// that samples of values do not drive is preferred to a plain one that they do: there their noise adds up.
 pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>) -> (Class, Claim<Cascade>) {
     let lie = plant.derivative_of_transform();
     let components: Vec<Component> =
         lie.iter().enumerate().map(|(index, rate)| component_of(plant, domain, index, *rate)).collect();
     if plant.cascade_class != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
-        let h = components.iter().filter_map(Component::free).collect();
+        let h: Vec<Expr> = components.iter().filter_map(Component::free).collect();
+        if let Some(rows) = with_fewer_values(plant, domain, &lie, &h).filter(|_| plant.cascade_class.is_none()) {
+            let result = gpebo::cascade(plant, domain, rows);
+            return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
+        }
         return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });
     }
     let row = |(rate, component): (&Expr, &Component)| match component {
@@ -66,7 +71,9 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let generalised = rows.iter().all(|row| matches!(row, Ok(Some(_))));
     let mends = mends(plant, domain, &lie, &components);
     if generalised && plant.cascade_class != Some(Class::Pebo) {
-        let result = gpebo::cascade(plant, domain, rows.into_iter().filter_map(|row| row.ok()?).collect());
+        let rows: Vec<affine::Row> = rows.into_iter().filter_map(|row| row.ok()?).collect();
+        let rows = with_fewer_values(plant, domain, &lie, &rows.concat()).unwrap_or(rows);
+        let result = gpebo::cascade(plant, domain, rows);
         let plain = components.iter().any(|c| c.free().is_none()).then(|| mends.into_iter().collect()).flatten();
         let result = Cascade { mend: plain, ..result };
         return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
@@ -86,6 +93,23 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     let noted = |refusal: Diagnostic| if refusal.code == Code::CascadeRefuted { refusal.note(note) } else { refusal };
     found.extend(refusals.into_iter().map(noted));
     (Class::Pebo, claim)
+}
+
+/// The rates as affine functions of the transform, where these hold fewer outputs that are given by value than the formulas
+/// of a cascade do.
+fn with_fewer_values(plant: &Plant, domain: &Domain, rates: &[Expr], cascade: &[Expr]) -> Option<Vec<affine::Row>> {
+    let arena = &plant.arena;
+    let held = |formulas: &[Expr]| {
+        let symbols = arena.symbols_of(formulas);
+        plant.y.iter().filter(|output| output.value.is_some() && symbols.contains(&output.symbol)).count()
+    };
+    if held(cascade) == 0 {
+        return None;
+    }
+    let everywhere = domain.without_equations();
+    let rows: Option<Vec<affine::Row>> =
+        rates.iter().map(|rate| affine::of(plant, &everywhere, *rate).ok().flatten()).collect();
+    rows.filter(|rows| held(&rows.concat()) < held(cascade))
 }
 
 /// The obstacles to the cascade, component by component; components that `row` makes affine in the transform are
