@@ -132,8 +132,8 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// over-parameterised one.
     fn theta(&self, eta: &SVector<Self::Scalar, NE>) -> SVector<Self::Scalar, NZ>;
 
-    /// The unknown `eta` as a function of `theta`, where it has more components: its estimate is then kept among the
-    /// values of this function, see [`Observer`](crate::Observer). None where `eta` is `theta`.
+    /// The unknown `eta` as a function of `theta`, where it has more components: the estimate that goes out is then
+    /// the nearest of the values of this function, see [`Observer`](crate::Observer). None where `eta` is `theta`.
     fn functions(&self, _theta: &SVector<Self::Scalar, NZ>) -> Option<Functions<Self::Scalar, NE, NZ>> {
         None
     }

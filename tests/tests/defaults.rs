@@ -338,32 +338,80 @@ fn an_unknown_beside_an_output_under_the_derivative_is_not_taken_for_zero_at_the
     assert!(summary.surprise.is_some_and(|square| (0.7..1.4).contains(&square)), "{}", summary.text());
 }
 
-/// A heading by a compass of two axes, and the bias of a gyroscope: components of phi that depend on one another.
-const COMPASS: &str = "
-model: compass
-x: [psi, b]
-y: [mx, my]
-u: [w]
-angles: {psi: 2*pi}
-f_x: {psi: w + b, b: 0}
-g_y: {mx: cos(psi), my: sin(psi)}
+/// The speed of the wind from that of the rotor: v and v^2 are components of phi, which depend on one another.
+const TURBINE: &str = "
+model: wind_rotor
+parameters: {J: 4e7, a: 2.4e4, b: 6e4, c: 8e5}
+x: [v]
+y: [omega]
+u: [Tg]
+assume: [v > 0, omega > 0]
+f_x: {v: 0}
+f_y: {omega: (a*v^2 + b*v*omega - c*omega^2 - Tg)/J}
 simulation:
-  duration: 20
-  step: 0.01
-  initial: {psi: 1, b: 0.05}
-  control: {w: 0.5*sin(t)}
-  noise: {mx: 0.02, my: 0.02}
+  duration: 200
+  step: 0.1
+  initial: {v: 8, omega: 1}
+  control: {Tg: 1.5e6 + 0.5e6*sin(0.1*t)}
+  noise: {omega: 0.002}
 ";
 
 #[test]
-fn the_error_of_the_nearest_state_is_as_expected() {
-    // The square of the heading's error over its expectation, the mean of runs: samples that drive the cascade and
-    // components that depend on one another count. It scatters by a third of itself in twelve runs, as the bias settles in
-    // the second half.
-    let ratios = (1..=12).map(|seed| {
-        let rated = &run(COMPASS, seed).estimates[0];
-        (rated.score.rms / rated.expected.unwrap()).powi(2)
-    });
-    let mean = (ratios.sum::<f64>() / 12.0).sqrt();
-    assert!((0.7..1.5).contains(&mean), "{mean}");
+fn the_error_of_the_nearest_state_is_expected_of_it() {
+    let summary = run(TURBINE, 1);
+    let rated = &summary.estimates[0];
+    let ratio = rated.expected.unwrap() / rated.score.rms;
+    // It is about twice the error, as the drift that is still assumed counts too. Of v alone, beside a square that is known
+    // better, some four hundred times the error is expected.
+    assert!((0.2..5.0).contains(&ratio), "{}", summary.text());
+}
+
+/// A tank that empties: its level comes within the noise of the sensor of 0, where the root in its rate ends.
+const TANK: &str = "
+model: tank
+x: [c]
+y: [h]
+u: [q]
+assume: [h > 0]
+f_x: {c: 0}
+f_y: {h: q - c*sqrt(h)}
+observer: {sensors: {h: 0.01}, start: {c: 1}, wanted: {c: 1e-6}}
+simulation:
+  duration: 60
+  step: 0.02
+  initial: {c: 0.5, h: 0.5}
+  control: {q: 0.06 + 0.03*sin(t)}
+  noise: {h: 0.01}
+";
+
+#[test]
+fn an_error_beside_the_edge_of_a_root_is_not_expected_to_be_zero() {
+    let summary = run(TANK, 1);
+    // A sample with a hundredth of noise every 20 ms does not tell c to a millionth.
+    let text = summary.text();
+    assert!(matches!(summary.certainty, Some(pebo_gen::simulate::Certainty::NotYet { .. })), "{text}");
+}
+
+/// The distance to a beacon of a vehicle whose log has an unknown scale k: while the estimate of k^2 is negative there is
+/// no state.
+const LOG: &str = "
+model: log
+x: [px, py, k]
+y: [r]
+u: [v, psi]
+assume: [r > 0, k > 0]
+f_x: {px: k*v*cos(psi), py: k*v*sin(psi), k: 0}
+g_y: {r: sqrt(px^2 + py^2)}
+simulation:
+  duration: 300
+  step: 0.5
+  initial: {px: 80, py: -40, k: 1.05}
+  control: {v: 1.5, psi: sin(0.03*t) + 0.005*t}
+  noise: {r: 0.3}
+";
+
+#[test]
+fn an_estimate_that_leaves_its_domain_comes_back() {
+    let summary = run(LOG, 1);
+    assert!(summary.stateless > 0 && summary.unsettled().is_empty(), "{}", summary.text());
 }

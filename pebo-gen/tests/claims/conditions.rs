@@ -125,7 +125,6 @@ fn more_components_than_states_recover_the_states_everywhere() {
     assert_eq!(formulas, ["z1*cos(ph) - z2*sin(ph)", "z3"]);
 }
 
-/// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 /// Beside a heading that is known by its sine and cosine, two rows hold the second coordinate, and one of them does
 /// wherever the vehicle heads.
 #[test]
@@ -139,6 +138,7 @@ fn states_beside_known_ones_are_recovered_by_all_components_that_hold_them() {
     assert!(plant.derivation.conditions.is_empty(), "{:?}", plant.derivation.conditions);
 }
 
+/// `sqrt(x)^2` is x only where it exists: a point with a negative x must not count against the claim.
 #[test]
 fn points_without_a_value_refute_nothing() {
     let plant = derived("x: [p]\ny: [x]\nu: [u]\nf_x: {p: u + p*(sqrt(x)^2 - abs(x))}\nf_y: {x: p}\nphi: [p]");

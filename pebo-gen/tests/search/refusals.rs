@@ -27,6 +27,18 @@ fn a_two_link_arm_has_no_transform_and_a_certificate_says_so() {
     );
 }
 
+/// Roots that cancel make functions that are zero, as `sqrt(d) + h2/sqrt(d) - h1/sqrt(d)` with `d = h1 - h2`.
+#[test]
+fn functions_that_vanish_are_no_components() {
+    let tanks = "parameters: {A1: 0.5, A2: 0.8, a: 0.02}\nx: [h2]\ny: [h1]\nu: [qin, qp]\nassume: [h1 > h2, h2 > 0]\n\
+        f_x: {h2: (a*sqrt(h1 - h2) - qp)/A2}\nf_y: {h1: (qin - a*sqrt(h1 - h2))/A1}";
+    let (_, found) = search(tanks, None);
+    assert!(!found.candidates.is_empty());
+    for candidate in &found.candidates {
+        assert!(candidate.formulas().iter().all(|phi| !phi.contains("sqrt")), "{}", candidate.sentence());
+    }
+}
+
 /// Bounds of plants whose transforms are known.
 #[test]
 fn bounds_are_those_of_the_transforms_that_there_are() {
