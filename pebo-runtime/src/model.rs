@@ -246,7 +246,8 @@ pub struct Functions<S: Real, const NE: usize, const NZ: usize> {
 /// the sample. One that is the derivative of its rate keeps the sensor's noise out of that rate, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputSlopes<S: Real, const NR: usize, const NZ: usize> {
-    /// Those of the regression's, in 1/s times the ratio of the outputs' units.
+    /// Those of the regression's rows, in 1/s times the ratio of the outputs' units; those of a row that holds at every
+    /// instant, in that ratio, are the same at all z.
     pub rates: SMatrix<S, NR, NR>,
     /// Those of the cascade's, a column for each output.
     pub cascade: SMatrix<S, NZ, NR>,

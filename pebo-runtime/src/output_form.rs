@@ -15,7 +15,7 @@ use crate::{Extension, Fault, Flow, Functions, Fundamental, Model, Real, Rebase,
 /// w' = A + B z        z' = Lambda z + h        p_0(y) = w - p_1(y) z
 /// ```
 ///
-/// A row that holds at every instant, `0 = A + B z`, is one of these measurements already: it has no `w`.
+/// A row that holds at every instant, `0 = A + B z`, is one of these measurements already: it has no `w` of its own.
 ///
 /// With `p_0 = y` and `p_1 = 0`, as in most models, this is `y = y_0 + xi_y + Psi_y theta` with `y_0` among the
 /// unknowns: `xi_y' = phi_0` and `Psi_y' = phi_1` along the run. Nothing is differentiated, so white noise of the
@@ -31,7 +31,8 @@ use crate::{Extension, Fault, Flow, Functions, Fundamental, Model, Real, Rebase,
 /// ```
 ///
 /// which is the same along every trajectory, where `p_0 = w - p_1 z`, whatever the estimate is, and free of the noise of
-/// `p_0` to first order where it is right. Where the rates are affine in outputs and `z` combined, with such slopes the
+/// `p_0` to first order where it is right. So it is with a row that holds at every instant, in which such an output
+/// stands beside others. Where the rates are affine in outputs and `z` combined, with such slopes the
 /// observer is *the* continuous-discrete Kalman filter.
 ///
 /// Elsewhere the square of the noise is in these rates, a bias. A form that is [`expecting`](Self::expecting) outputs
@@ -181,16 +182,20 @@ where
         let rates = NW - NZ;
         let start = M::Extension::new(SVector::zeros());
         let mut held = self.model.primitive(&start, terms);
+        let mut outputs = SMatrix::<M::Scalar, NR, NR>::identity();
         if M::INSTANTS > 0 {
             let instant = self.model.regression(&start, terms, u);
+            let slopes = self.model.output_slopes(terms, u, &SVector::zeros()).rates;
+            let known = instant.known - product(&slopes, &held.known);
+            let factor = instant.factor - product(&slopes, &held.factor);
             for row in rates..NR {
-                held.known[row] = instant.known[row];
-                held.factor.set_row(row, &instant.factor.row(row));
+                held.known[row] = known[row];
+                held.factor.set_row(row, &factor.row(row));
+                outputs.set_row(row, &-slopes.row(row));
             }
         }
         let through = SMatrix::<M::Scalar, NR, NW>::from_fn(|i, j| match j.checked_sub(rates) {
-            None if i == j => nalgebra::one(),
-            None => nalgebra::zero(),
+            None => outputs[(i, j)],
             Some(j) => -held.factor[(i, j)],
         });
         Sides { known: held.known - product(&through, extension.xi()), factor: product(&through, extension.psi()) }

@@ -16,8 +16,7 @@ Looked at:
 - the errors of many runs without disturbance, against *expected*: their variance is that of the noise, by the quantiles
   of runs that start without an error, and that of the start, by runs without noise that start with one;
 - the errors that an input `sin(t)` and outputs that start at 1 make alone, which are small beside *expected*;
-- *expected* without each of the sensors in turn: no smaller than with it, where no output is in the cascade. Where one
-  is, the gain of the observer is not the best (`docs/estimators.md`), and those that hurt the most are printed.
+- *expected* without each of the sensors in turn: no smaller than with it.
 
 All are means over the last tenth of a run. Needs NumPy. Exits with 1 on a wrong statement, which it prints with the
 plant; `--show` prints the ratios of each plant.
@@ -186,7 +185,7 @@ class Trial:
 
     def __init__(self, program, plant):
         self.program, self.plant = program, plant
-        self.wrong, self.looked, self.ratios, self.hurts = [], Counter(), {}, []
+        self.wrong, self.looked, self.ratios = [], Counter(), {}
 
     def call(self, plant, command, *options, limit="30"):
         with tempfile.TemporaryDirectory() as folder:
@@ -265,7 +264,7 @@ class Trial:
             self.ratios["expected to best, if the disturbance is no jumps"] = expected / plant.kalman(jumps=False)
         if any(expected < best * (1 - ROUNDING)):
             self.wrong.append(f"expected {expected} is better than the best {best}")
-        if self.group == "no output in a rate" and any(expected > best * MOST_VARIANCE**0.5):
+        if any(expected > best * MOST_VARIANCE**0.5):
             self.wrong.append(f"expected {expected}, best {best}: variances {(expected / best) ** 2}")
         if not any(plant.drift):
             measured, by_noise, by_start = self.measured(expected)
@@ -286,10 +285,7 @@ class Trial:
             ratio = expected / less
             self.ratios.setdefault("with a sensor to without", []).extend(ratio)
             if any(ratio > 1 + ROUNDING):
-                self.looked[f"sensor that hurts, {self.group}"] += 1
-                self.hurts.append(f"{max(ratio):.3g} times: y{i + 1} of seed {plant.seed}, {self.group}, expected {expected}, without {less}")
-                if "cascade" not in self.group:
-                    self.wrong.append(f"the sensor y{i + 1} hurts: expected {expected}, without it {less}")
+                self.wrong.append(f"the sensor y{i + 1} hurts: expected {expected}, without it {less}")
 
     def measured(self, expected):
         plant = self.plant
@@ -322,12 +318,11 @@ def stands(output, by_rate, equation):
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--show"]
     program, count, first = arguments[0], int(arguments[1]), int((arguments + ["1"])[2])
-    ratios, looked, hurts, bad = defaultdict(list), Counter(), [], 0
+    ratios, looked, bad = defaultdict(list), Counter(), 0
     work = lambda seed: Trial(program, Plant(seed)).look()
     with ThreadPoolExecutor(2) as pool:
         for trial in pool.map(work, range(first, first + count)):
             looked += trial.looked
-            hurts += trial.hurts
             for kind, found in trial.ratios.items():
                 how = ", phi given" if trial.plant.given else ", phi found"
                 how += ", disturbed" if any(trial.plant.drift) else ""
@@ -342,7 +337,6 @@ def main():
     for kind, found in sorted(ratios.items()):
         low, middle, high, most = np.quantile(found, [0, 0.5, 0.9, 1])
         print(f"{len(found):6} {low:7.3f} {middle:7.3f} {high:7.3f} {most:8.3f}  {kind}")
-    print("sensors that hurt the most:", *sorted(hurts, key=lambda h: -float(h.split()[0]))[:12], sep="\n  ")
     print(*[f"{times:6} {kind}" for kind, times in sorted(looked.items())], sep="\n")
     print(f"{count} plants, {bad} with a wrong statement; margin of {RUNS} runs: {100 * MARGIN:.0f} % of a standard deviation")
     sys.exit(bad > 0)

@@ -3,7 +3,7 @@
 //! In: the cascade, and a regression of rates of outputs. Out: the derivatives of both by these outputs, as functions of
 //! z. With them and an estimate of z the rates are linearised at each sample, so that to first order the noise of its
 //! sensors is in no rate; along every trajectory the linearised rates have the values of the rates themselves, whatever
-//! the estimate is.
+//! the estimate is. So it is with rows that hold at an instant, where such an output stands beside others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +19,7 @@ use super::design::{Cascade, Regression};
 pub struct OutputSlopes {
     /// The positions in the plant's outputs of those whose rates are the first rows of the regression.
     pub outputs: Vec<usize>,
-    /// Those of the regression's rates, for each of its rows; a column for each row.
+    /// Those of the regression's rows, a column for each row. Those of an instant do not depend on z.
     pub rates: Vec<Vec<Expr>>,
     /// Those of the cascade's, for each component of the transform.
     pub cascade: Vec<Vec<Expr>>,
@@ -33,13 +33,18 @@ impl OutputSlopes {
         let (known, factor) = at_start(plant, regression);
         let equations = known.len();
         let row = |known: Expr, factor: &[Expr], is_rate: bool| -> Vec<Expr> {
-            let slope = |column: usize| match outputs.get(column) {
-                Some(&output) if is_rate => {
-                    let by = |rate: Expr| slope(arena, rate, plant.y[output].symbol);
-                    let terms = factor.iter().zip(&plant.z).map(|(f, z)| arena.mul(by(*f), arena.of_symbol(*z)));
+            let slope = |column: usize| {
+                let Some(&output) = outputs.get(column) else { return arena.zero() };
+                let by = |rate: Expr| slope(arena, rate, plant.y[output].symbol);
+                let mut terms = factor.iter().zip(&plant.z).map(|(f, z)| arena.mul(by(*f), arena.of_symbol(*z)));
+                if is_rate {
                     terms.fold(by(known), |sum, term| arena.add(sum, term))
+                } else if terms.all(|term| arena.is_zero(term)) {
+                    by(known)
+                } else {
+                    // Noise in a factor of the unknown is corrected as an error in a variable.
+                    arena.zero()
                 }
-                _ => arena.zero(),
             };
             (0..equations).map(slope).collect()
         };
@@ -101,7 +106,11 @@ mod tests {
     use crate::source::Source;
 
     fn derived(lines: &str) -> (Plant, Derivation) {
-        let text = format!("model: m\nx: [a]\ny: [y]\nu: [u]\nparameters: {{k: 2}}\n{lines}\n");
+        derived_of(&format!("y: [y]\n{lines}"))
+    }
+
+    fn derived_of(lines: &str) -> (Plant, Derivation) {
+        let text = format!("model: m\nx: [a]\nu: [u]\nparameters: {{k: 2}}\n{lines}\n");
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
         let derivation = Derivation::derive(&plant);
         (plant, derivation)
@@ -124,6 +133,20 @@ mod tests {
         // So has what multiplies an unknown, at an estimate.
         assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + y^2)*a}\nphi: [a]").unwrap(), ["2*y*z1", "0"]);
         assert_eq!(of("f_x: {a: u}\nf_y: {y: (2 + u^2)*a}\nphi: [a]"), None);
+    }
+
+    #[test]
+    fn a_value_has_the_slopes_that_do_not_depend_on_z() {
+        // In the value of `v`, `y` stands alone or as a factor of the unknown.
+        for (value, expected) in [("3*a + u*y", "-u"), ("a + y^2", "-2*y"), ("a*(1 + y)", "0"), ("a*y + y", "0")] {
+            let (plant, derivation) =
+                derived_of(&format!("y: [y, v]\nf_x: {{a: u}}\nf_y: {{y: a - y}}\ng_y: {{v: '{value}'}}\nphi: [a]"));
+            let regression = derivation.regression.result.as_ref().unwrap();
+            assert_eq!(regression.instants(&plant.arena), 1, "{value}");
+            let found = OutputSlopes::of(&plant, derivation.cascade.result.as_ref().unwrap(), regression).unwrap();
+            let of_y = [found.rates[0][0], found.rates[1][0]].map(|slope| plant.arena.print(slope));
+            assert_eq!(of_y, ["-1", expected], "{value}");
+        }
     }
 
     #[test]

@@ -299,16 +299,19 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
         let mut held = self.primitive(extension, y);
+        let mut through = SMatrix::<f64, N, N>::zeros();
+        (0..rows).for_each(|row| through[(row, row)] = 1.0);
         if rows < self.nr {
             let instant = self.sides(extension, y, u);
+            let slopes = self.output_slopes(y, u, &SVector::zeros()).rates;
+            let (known, factor) = (instant.known - slopes * held.known, instant.factor - slopes * held.factor);
             for row in rows..self.nr {
-                held.known[row] = instant.known[row];
-                held.factor.set_row(row, &instant.factor.row(row));
+                held.known[row] = known[row];
+                held.factor.set_row(row, &factor.row(row));
+                through.set_row(row, &-slopes.row(row));
             }
         }
-        let mut through = SMatrix::<f64, N, N>::zeros();
         for i in 0..self.nr {
-            through[(i, i)] = if i < rows { 1.0 } else { 0.0 };
             for j in 0..self.nz {
                 through[(i, rows + j)] = -held.factor[(i, j)];
             }
