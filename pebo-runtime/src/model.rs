@@ -37,9 +37,9 @@ pub enum Regression {
 /// | [`primitive`](Self::primitive) | `primitive_0`, `primitive_1` | at both ends, unless the regression is static |
 /// | [`output_slopes`](Self::output_slopes) | slopes of the rates by outputs | at both ends, in the output form |
 /// | [`theta`](Self::theta) | `theta` from the estimate of `eta` | once for each sample |
-/// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to four times |
+/// | [`functions`](Self::functions) | `eta` as a function of `theta`, if it has more components | up to seven times |
 /// | [`recover`](Self::recover) | `phi_left` | once for each sample |
-/// | [`transform`](Self::transform) | `phi`, if its components depend on one another | up to four times |
+/// | [`transform`](Self::transform) | `phi`, if its components depend on one another | up to seven times |
 ///
 /// [`h`](Self::h), [`phi_0`](Self::phi_0), [`phi_1`](Self::phi_1), [`phi_left`](Self::phi_left) and the others give one
 /// of these values from the output itself.

@@ -2,16 +2,20 @@
 //!
 //! In: an estimate of `eta` with its information matrix, and `eta` as a function of parameters: of `theta`, or of the states
 //! through `phi`. Out: the value of that function which is nearest in the norm of the information, with its slopes, found
-//! by Gauss and Newton's method from given parameters; and the error that it has by an error of the estimate.
+//! by Gauss and Newton's method from given parameters, with shorter steps where a whole one leads away; and the error
+//! that it has by an error of the estimate.
 
 use nalgebra::{SMatrix, SVector};
 
 use crate::numeric::sum::all_finite;
 use crate::{Functions, Information, Real};
 
-/// The number of iterations: the estimate was a value of the function one sample before, so that few are needed, and a
-/// step takes a bounded time.
-const ITERATIONS: usize = 3;
+/// The most iterations: on most samples the estimate was near a value of the function one sample before, and one or two do.
+/// After a start far away, more than these found no more of a beacon's distances.
+const ITERATIONS: usize = 6;
+
+/// The decrease of the squared distance from which on it is found: the next step is a thousandth of a standard deviation.
+const FOUND: f64 = 1e-6;
 
 /// The greatest distance, in standard deviations. The true value, which is among these, is farther away with ten
 /// components in one case of ten thousand: beyond it the search has not found the true one, or the covariance is not
@@ -28,17 +32,25 @@ pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
 ) -> Option<Functions<S, NE, NZ>> {
     let mut at = functions(&parameters)?;
     let mut misfit = information.misfit(&(at.values - eta));
+    let found: S = Real::from_f64(FOUND);
+    let mut share = S::one();
     for _ in 0..ITERATIONS {
         let Ok(step) = information.along(&(at.values - eta), &at.slopes).solve() else { break };
-        let next = parameters + step;
+        let next = parameters + step * share;
         let Some(there) = functions(&next) else { break };
         let left = information.misfit(&(there.values - eta));
+        let is_found = Real::abs(misfit - left) <= found;
         // False for a NaN too.
         let is_nearer = left < misfit;
-        if !is_nearer {
+        if is_nearer {
+            (parameters, at, misfit, share) = (next, there, left, S::one());
+        } else {
+            // Too far: the functions bend.
+            share *= Real::from_f64(0.5);
+        }
+        if is_found {
             break;
         }
-        (parameters, at, misfit) = (next, there, left);
     }
     let most: S = Real::from_f64(MOST_DEVIATIONS * MOST_DEVIATIONS);
     (misfit <= most && all_finite(&at.values)).then_some(at)

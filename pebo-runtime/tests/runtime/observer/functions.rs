@@ -131,6 +131,22 @@ impl Model<1, 1, 1, 1, 1, 2> for Square {
     }
 }
 
+/// From 0.5 the tangent of the square leads beyond 9, where its value is farther from 9 than it was.
+#[test]
+fn a_step_that_leads_away_is_shortened() {
+    let estimator = LeastSquares::diagonal(&Pair::new(4.0, 16.0), 0.0).unwrap();
+    let regression = SampledRegression::<f64, 1, 2>::new(&Scalar::new(NOISE * 0.1_f64.sqrt())).unwrap();
+    let square = Square { is_constrained: true };
+    let mut observer = Observer::with_regression(square, estimator, regression, Scalar::zeros()).unwrap();
+    observer.restart(Scalar::zeros(), &Pair::new(0.5, 0.25)).unwrap();
+    let (a, u) = (3.0, Scalar::new(1e3));
+    for _ in 0..2 {
+        observer.step(Scalar::new(a + u.x * a * a), u, 0.1).unwrap();
+    }
+    // The prior of a, of one standard deviation of 2, moves the estimate by a part of the sensor's error alone.
+    assert!((observer.theta().x - a).abs() < 1e-4, "{}", observer.theta());
+}
+
 /// The true value is among those of the functions: data that contradict all of these are no reason to trust one.
 #[test]
 fn an_estimate_that_is_far_from_all_values_stays() {
