@@ -63,6 +63,12 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
     /// whose primitives are zero. An output that is given by its value has such a row beside the rates of others.
     const INSTANTS: usize = 0;
 
+    /// The number of rows, the first ones, that say something of an interval and nothing of an instant: none of a static
+    /// regression, all of a dynamic one. The others count at the first sample too.
+    fn rates(&self) -> usize {
+        if matches!(Self::REGRESSION, Regression::Static) { 0 } else { NR }
+    }
+
     /// The periods of the outputs that are angles, 0 for the others: the observer counts the turns of their sensors,
     /// see [`unwrapped`](crate::unwrapped). By default none is an angle.
     fn periods(&self) -> SVector<Self::Scalar, NY> {

@@ -133,6 +133,11 @@ where
     const LINEARISED: bool = true;
     const RELATED: bool = M::RELATED;
 
+    /// The first sample of outputs with rates is where these begin.
+    fn rates(&self) -> usize {
+        NR - M::INSTANTS
+    }
+
     fn periods(&self) -> SVector<M::Scalar, NY> {
         self.model.periods()
     }

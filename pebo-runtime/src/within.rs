@@ -51,6 +51,10 @@ where
     const LINEARISED: bool = M::LINEARISED;
     const RELATED: bool = M::RELATED;
 
+    fn rates(&self) -> usize {
+        self.model.rates()
+    }
+
     fn periods(&self) -> SVector<S, NY> {
         self.model.periods()
     }

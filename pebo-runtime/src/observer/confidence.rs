@@ -82,7 +82,7 @@ where
     /// The innovation of a sample, without taking it; to be called before a [`step`](Self::step) with the same
     /// arguments. A [`Gate`](crate::Gate) refuses outliers by it.
     ///
-    /// Before the second sample nothing is expected: the innovation is 0.
+    /// Of the first sample it is 0: a start is a guess, by which no sample is refused.
     ///
     /// # Errors
     /// A [`Fault`] as of the step, and [`Fault::State`] where the covariance has no finite value.

@@ -129,10 +129,7 @@ where
         let root = estimator.covariance_root(nalgebra::zero())?;
         let equations = Equations { sides: &sides, sensors, eta: estimator.estimate(), root };
         let mut linearised = equations.linearised(y, &equations.likely(y, &left_out));
-        for row in (0..NR).filter(|row| left_out[*row]) {
-            linearised.known[row] = nalgebra::zero();
-            linearised.factor.row_mut(row).fill(nalgebra::zero());
-        }
+        linearised.leave_out(&left_out);
         let is_finite = all_finite(&linearised.known) && all_finite(&linearised.factor);
         is_finite.then(|| regression.step([&linearised; 2], dt))
     }

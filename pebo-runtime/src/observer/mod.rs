@@ -19,6 +19,9 @@ use errors_in_variables::{Correction, Led, Taken};
 pub use late::{Late, LateObserver};
 use rebasing::Rebasing;
 
+/// The share of a period in which nothing drifts, as there is no interval before the first sample.
+const AN_INSTANT: f64 = 1e-9;
+
 /// A parameter-estimation-based observer.
 ///
 /// # Sampling
@@ -26,12 +29,12 @@ use rebasing::Rebasing;
 /// ```text
 /// sample      y_0          y_1          y_2
 /// input        |--- u_0 ---|--- u_1 ---|
-/// call     step(y_0,_,_) step(y_1,u_0,dt) step(y_2,u_1,dt)
+/// call     step(y_0,u_0,_) step(y_1,u_0,dt) step(y_2,u_1,dt)
 /// ```
 ///
 /// A call gets the output at the *end* of an interval and the input that was held *during* it. The first call has no
-/// interval behind it: it sets the clock to 0 with the output `y_0`, and its `u` and `dt` are checked but have no
-/// effect. `dt` is the time since the last sample that was accepted; it need not be constant.
+/// interval behind it: it sets the clock to 0 with the output `y_0`. Its `dt` has no effect, and its `u` is the input
+/// at that instant, as an output that is given by its value may hold it. `dt` is the time since the last sample that was accepted; it need not be constant.
 ///
 /// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
 ///
@@ -290,7 +293,7 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let terms = self.model.terms(y);
         let Some(before) = &self.terms else {
-            return self.begin(terms, y);
+            return self.begin(terms, y, u[1], dt);
         };
         // Handed over as copies, so that all may stay in registers where there is no re-basing.
         if let Some((trigger, step)) = self.rebasing {
@@ -385,20 +388,63 @@ where
     }
 
     /// Takes the first sample, which has no interval behind it.
-    fn begin(&mut self, terms: M::Terms, y: &SVector<M::Scalar, NY>) -> Result<SVector<M::Scalar, NX>, Fault> {
+    fn begin(
+        &mut self,
+        terms: M::Terms,
+        y: &SVector<M::Scalar, NY>,
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let extension = self.model.begin(&self.state.extension, &terms);
         let theta = self.model.theta(&self.state.estimator.estimate());
-        let estimate = self.model.recover(&extension.coordinates(&theta), &terms);
-        if !all_finite(&estimate) {
-            return Err(Fault::Estimate);
-        }
+        let start = self.model.recover(&extension.coordinates(&theta), &terms);
         if !extension.is_finite() {
             return Err(Fault::State);
         }
+        // An observer begins also where its start has a state and the sample leads to none.
+        let learned = self.learned_at_once(&extension, &terms, &Taken::whole(y, [u, u], dt));
+        let learned = learned.and_then(|(estimator, regression)| {
+            let estimate = self.state_of(&extension, &estimator, &terms);
+            all_finite(&estimate).then_some((estimator, regression, estimate))
+        });
+        let estimate = match learned {
+            Some((estimator, regression, estimate)) => {
+                self.state.estimator = estimator;
+                self.state.regression.take(regression);
+                estimate
+            }
+            None if all_finite(&start) => start,
+            None => return Err(Fault::Estimate),
+        };
         self.state.extension = extension;
         self.state.y = Some(*y);
         self.terms = Some(terms);
         Ok(estimate)
+    }
+
+    /// Estimator and regression after the rows of the first sample that need no interval; none where there are none, or
+    /// they have no value.
+    fn learned_at_once(
+        &self,
+        extension: &M::Extension,
+        terms: &M::Terms,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Option<(E, R::Step)> {
+        let (rates, before) = (self.model.rates(), &self.state.regression);
+        if rates >= NR || before.remembers() {
+            return None;
+        }
+        let left_out = core::array::from_fn(|row| row < rates);
+        let mut sides = self.model.regression(extension, terms, sample.u[1]);
+        sides.leave_out(&left_out);
+        // A sample by itself has the same weight after any time, in which the unknown drifts.
+        let sample = Taken { left_out, dt: sample.dt * Real::from_f64(AN_INSTANT), ..*sample };
+        let step = before.step([&sides; 2], sample.dt);
+        let equations = Sides { known: step.regressand(), factor: step.regressor() };
+        let (estimator, corrected) =
+            self.estimated(self.state.estimator.clone(), (extension, before), &equations, &sample).ok()?;
+        let step = corrected.unwrap_or(step);
+        is_none(step.blemish() + estimator.blemish()).then_some((estimator, step))
     }
 
     /// Keeps the state after an interval if all of it and its estimate are finite.

@@ -52,8 +52,8 @@ pub(super) type Rebasing<
     const NE: usize,
 > = (Trigger<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar>, Step<O, M, R, NX, NY, NU, NZ, NR, NE>);
 
-/// The state after an interval, if there was one.
-type Led<X, R, E, S, const NR: usize, const NE: usize> = Option<Next<X, StepOf<R, S, NR, NE>, E>>;
+/// The state after an interval.
+type NextOf<X, R, E, S, const NR: usize, const NE: usize> = Next<X, StepOf<R, S, NR, NE>, E>;
 
 pub(super) type StepOf<R, S, const NR: usize, const NE: usize> = <R as RegressionOperator<S, NR, NE>>::Step;
 
@@ -152,7 +152,14 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let terms = self.model.terms(y);
         if self.terms.is_none() {
-            return self.move_by_drift(drift, None, (terms, y), dt);
+            // A form that is none is refused before anything changes.
+            drift.is_due(self.state.extension.offset())?;
+            let estimate = self.begin(terms, y, u, dt)?;
+            if drift.is_due(self.state.extension.offset())? {
+                self.state.turn()?;
+                self.state.shift(&drift.shift(self.state.extension.offset(), dt));
+            }
+            return Ok(estimate);
         }
         self.step_drifting(Trigger::Drift(drift), terms, &Taken::whole(y, [u, u], dt))
     }
@@ -161,23 +168,16 @@ where
     fn move_by_drift(
         &mut self,
         drift: Drift<M::Scalar>,
-        next: Led<M::Extension, R, E, M::Scalar, NR, NZ>,
+        next: NextOf<M::Extension, R, E, M::Scalar, NR, NZ>,
         (terms, y): (M::Terms, &SVector<M::Scalar, NY>),
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let extension = next.as_ref().map_or(&self.state.extension, |next| &next.extension);
-        if !drift.is_due(extension.offset())? {
-            return match next {
-                Some(next) => self.accept(next, terms, y),
-                None => self.begin(terms, y),
-            };
+        if !drift.is_due(next.extension.offset())? {
+            return self.accept(next, terms, y);
         }
-        let mut moved = self.state.clone();
-        if let Some(next) = next {
-            moved.extension = next.extension;
-            moved.regression.take(next.regression);
-            moved.estimator = next.estimator;
-        }
+        let Next { extension, regression, estimator } = next;
+        let mut moved = State { extension, estimator, ..self.state.clone() };
+        moved.regression.take(regression);
         moved.turn()?;
         moved.shift(&drift.shift(moved.extension.offset(), dt));
         self.keep(moved, terms, y)
@@ -192,7 +192,7 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let Trigger::Drift(drift) = trigger else { return Err(Fault::Gain) };
         let next = self.next(self.led(&terms, sample)?, sample)?;
-        self.move_by_drift(drift, Some(next), (terms, sample.y), sample.dt)
+        self.move_by_drift(drift, next, (terms, sample.y), sample.dt)
     }
 
     /// A step of an observer that starts its extension again. The coordinates change before the estimator's step, so

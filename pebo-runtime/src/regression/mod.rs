@@ -28,6 +28,16 @@ pub struct Sides<S: Real, const NR: usize, const NE: usize> {
     pub factor: SMatrix<S, NR, NE>,
 }
 
+impl<S: Real, const NR: usize, const NE: usize> Sides<S, NR, NE> {
+    /// Makes these rows say nothing, `0 = 0 eta`.
+    pub(crate) fn leave_out(&mut self, rows: &[bool; NR]) {
+        for row in (0..NR).filter(|row| rows[*row]) {
+            self.known[row] = S::zero();
+            self.factor.row_mut(row).fill(S::zero());
+        }
+    }
+}
+
 /// A linear operator in time, applied to both sides of a regression: the equation holds for its outcome too.
 ///
 /// A step is first worked out and then taken, so that an [`Observer`](crate::Observer) can refuse it without a copy of

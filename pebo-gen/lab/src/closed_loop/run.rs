@@ -314,7 +314,7 @@ impl<'a> LoopState<'a> {
         }
         let estimates = self.baselines.of(&self.table);
         self.table[layout.baseline_estimates.clone()].copy_from_slice(estimates);
-        // The observer's first call gives its inputs and its step no effect.
+        // The observer's first call gives its step no effect.
         let y = &mut self.measured.values;
         if self.driver.observer.admits_partial() {
             self.scenario.sensors.leave_out(sample, y);

@@ -7,8 +7,8 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer, Uncertain,
-    Within,
+    Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer,
+    RegressionOperator, Uncertain, Within,
 };
 
 use crate::settings::Prediction;
@@ -260,8 +260,13 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
         let observer = self.observer.now();
         let (Some(uncertainty), Some(after)) = (&mut self.uncertainty, observer.terms()) else { return };
         let (model, u) = (observer.model(), pad(u));
-        let Some((before, z)) = before else { return uncertainty.begin(model, after, &u) };
         let (_, map) = observer.extension().parts();
+        let Some((before, z)) = before else {
+            let rows: SMatrix<f64, N, N> = RegressionOperator::regressor(observer.regression());
+            let root = observer.estimator().covariance_root(0.0).filter(|_| rows.amax() > 0.0);
+            let z = observer.extension().coordinates(&observer.theta());
+            return uncertainty.begin(model, (after, &u), root.map(|root| map * root).as_ref().map(|root| (root, &z)));
+        };
         let taken = observer.estimator().covariance_root(0.0).is_some_and(|root| {
             let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
             let interval = Interval { before: &before, after, u: &u, dt, z };

@@ -110,9 +110,14 @@ impl<const N: usize> Uncertainty<N> {
         self.factor = 1.0;
     }
 
-    /// Takes the first sample: in the output form it is the estimate of the outputs, and its noise is their error.
-    pub(crate) fn begin<M>(&mut self, model: &M, y: &SVector<f64, N>, u: &SVector<f64, N>)
-    where
+    /// Takes the first sample: in the output form it is the estimate of outputs with rates, and its noise is their error.
+    /// If the other rows were taken, least squares have the covariance `root root^T` after them, and this estimate of z.
+    pub(crate) fn begin<M>(
+        &mut self,
+        model: &M,
+        (y, u): (&SVector<f64, N>, &SVector<f64, N>),
+        learned: Option<(&SMatrix<f64, N, N>, &SVector<f64, N>)>,
+    ) where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
         let noise = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
@@ -128,6 +133,17 @@ impl<const N: usize> Uncertainty<N> {
             let beside = (self.rows, N - self.rows);
             map.view_mut((0, self.rows), beside).copy_from(&held.view((0, self.rows), beside));
             errors = map * errors * map.transpose();
+        }
+        if let Some((root, z)) = learned {
+            let mut rows = model.regression(&M::Extension::new(SVector::zeros()), y, u).factor;
+            rows.rows_mut(0, self.rows).fill(0.0);
+            let weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
+            let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);
+            let (kept, taken) = (SMatrix::identity() - gain * rows, gain * self.of_sample(model, y, u, z));
+            let crossed = kept * both * taken.transpose();
+            errors =
+                kept * errors * kept.transpose() + crossed + crossed.transpose() + taken * noise * taken.transpose();
+            both = kept * both + taken * noise;
         }
         self.joint = Some(JointCovariance { errors, both, noise });
     }

@@ -25,7 +25,6 @@ struct Kalman<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> Kalman<N, M> {
     /// Takes a sample; the normalised square of its innovation.
     fn step(&mut self, lambda: &SMatrix<f64, N, N>, h: &SVector<f64, N>, y: &SVector<f64, M>, dt: f64) -> f64 {
-        let mut square = 0.0;
         // Taylor's series of e^(Lambda dt) and of its integral, to the last bit.
         let (mut power, mut psi, mut integral) = (SMatrix::identity(), SMatrix::identity(), SMatrix::identity());
         for k in 1..30_u32 {
@@ -35,8 +34,13 @@ impl<const N: usize, const M: usize> Kalman<N, M> {
         }
         self.z = psi * self.z + integral * h * dt;
         self.p = psi * self.p * psi.transpose() + SMatrix::from_diagonal(&(self.process * dt));
-        // One sensor after the other, in Joseph's form.
-        for i in 0..M {
+        self.correct(y, 0)
+    }
+
+    /// Takes the sensors from this one on, one after the other in Joseph's form.
+    fn correct(&mut self, y: &SVector<f64, M>, from: usize) -> f64 {
+        let mut square = 0.0;
+        for i in from..M {
             let row = self.output.row(i).into_owned();
             let variance = (row * self.p * row.transpose()).x + self.sensor[i];
             let gain = self.p * row.transpose() / variance;
@@ -115,6 +119,7 @@ fn a_plant_free_of_its_outputs_is_the_kalman_filter() -> Result<(), Fault> {
     let mut noise = Noise::new(5);
     let mut closed = Loop::<f64, CaseOne<f64>>::new(1.0, [1.0, 10.0], dt)?;
     observer.step(closed.outputs(), Vector1::zeros(), dt)?;
+    kalman.correct(&closed.outputs(), 0);
     let (mut largest, mut squared) = (0.0_f64, 0.0);
     for k in 1..=20_000_u32 {
         let u = Vector1::new(closed.duty());
@@ -305,7 +310,9 @@ fn beside_kalman_of_rate_and_value(share: f64) -> Result<f64, Fault> {
         0.0, 0.0, 0.0,
     );
     let mut noise = Noise::new(7);
-    observer.step(Vector2::zeros(), Vector1::zeros(), dt)?;
+    observer.step(Vector2::new(0.0, 3.0), Vector1::zeros(), dt)?;
+    // The first sample of a rate is where its output begins.
+    kalman.correct(&Vector2::new(0.0, 3.0), 1);
     let (mut r, mut before, mut largest) = (0.0, 0.0, 0.0_f64);
     for k in 1..=2_000_u32 {
         let t = f64::from(k) * dt;

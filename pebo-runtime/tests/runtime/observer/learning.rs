@@ -42,9 +42,10 @@ fn a_sample_without_a_state_teaches_the_unknown() {
     let mut observer = Observer::with_regression(Root, squares, regression, Scalar::new(1.0)).unwrap();
     let samples = [-3.0, 4.0, 4.0, 4.0, 4.0].map(Scalar::new);
     let none = Scalar::zeros();
-    observer.step(Scalar::new(4.0), none, 0.1).unwrap();
+    // A first sample at which there is no state leaves the start.
+    assert_eq!(observer.step(samples[0], none, 0.1).unwrap(), Scalar::new(1.0));
     let before = *observer.state();
-    // The first sample is far off; the mean of all is 2.6.
+    // The second sample is as far off; the mean of all but the first is 17/6.
     assert_eq!(observer.step(samples[0], none, 0.1), Err(Fault::Estimate));
     assert_eq!(*observer.state(), before);
     observer.learn(samples[0], none, 0.1).unwrap();
