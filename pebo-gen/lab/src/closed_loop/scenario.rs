@@ -301,7 +301,7 @@ impl Resolution<'_> {
             errors: compile(&errors)?,
             curves: compile(&panels.values)?,
             panels: panels.panels,
-            assumed: AssumedDomain::of(plant, &layout.symbols, |assumed| {
+            assumed: AssumedDomain::of(plant, &derivation.conditions, &layout.symbols, |assumed| {
                 compile(&arena.substitute_all(assumed, &numbers))
             })?,
             names: layout.names(arena, &(0..layout.symbols.len())),

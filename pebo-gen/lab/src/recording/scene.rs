@@ -136,7 +136,7 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     let (scored, errors) =
         scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &compared);
     let errors = problems.keep(layout.program(arena, &errors, span))?;
-    let assumed = AssumedDomain::of(plant, &layout.symbols, |assumed| {
+    let assumed = AssumedDomain::of(plant, &derivation.conditions, &layout.symbols, |assumed| {
         problems.keep(layout.program(arena, &arena.substitute_all(assumed, &numbers), span))
     })?;
     let residuals = Residuals::resolve(plant, (&layout, design.settings.late.as_ref()), &numbers, (span, problems))?;

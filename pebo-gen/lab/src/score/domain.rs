@@ -1,7 +1,8 @@
-//! Watches whether a run stays in the domain that the plant's author assumes, for which alone the claims are proved.
+//! Watches whether a run stays in the domain for which alone the claims are proved: where the assumptions of the plant's
+//! author and the conditions of the verdict hold.
 //!
-//! In: the plant's assumptions, and the values of states, outputs and inputs at each instant. Out: each assumption that
-//! did not hold, with the first time and the number of instants. Assumptions of parameters alone were checked before.
+//! In: both, and the values of states, outputs and inputs at each instant. Out: each that did not hold, with the first time
+//! and the number of instants. Those of parameters alone were checked before.
 
 use std::collections::BTreeSet;
 
@@ -14,45 +15,58 @@ use serde::Serialize;
 /// not outside `> 0` by it.
 const ROUNDING: f64 = 1e-9;
 
-/// An assumption that did not hold throughout a run.
+/// An assumption or condition that did not hold throughout a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutsideDomain {
-    /// The assumption, as `s > 0`.
+    /// The assumption or condition, as `s > 0`.
     pub assumption: String,
+    /// True for a condition of the verdict.
+    pub is_condition: bool,
     /// The time of the first sample at which it did not hold, in seconds.
     pub since: f64,
     /// The number of samples at which it did not hold.
     pub samples: u64,
 }
 
-/// The assumptions whose values a table has.
+/// The assumptions and conditions whose values a table has.
 #[derive(Debug)]
 pub(crate) struct AssumedDomain {
     /// From the table to the expressions that are compared with 0.
     program: Program,
-    /// Each as text, with its comparison.
-    each: Vec<(String, Relation)>,
+    each: Vec<Watched>,
+}
+
+/// A comparison with 0.
+#[derive(Debug)]
+struct Watched {
+    text: String,
+    relation: Relation,
+    is_condition: bool,
 }
 
 impl AssumedDomain {
-    /// The assumptions of the plant in these symbols, some of which move; `compile` has the values of the others.
+    /// The assumptions of the plant and the conditions of its verdict in these symbols, some of which move; `compile` has
+    /// the values of the others.
     pub(crate) fn of(
         plant: &Plant,
+        conditions: &[(Expr, Relation)],
         symbols: &[Symbol],
         compile: impl FnOnce(&[Expr]) -> Option<Program>,
     ) -> Option<Self> {
         let arena = &plant.arena;
         let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
         let table: BTreeSet<Symbol> = symbols.iter().copied().filter(|symbol| !parameters.contains(symbol)).collect();
-        let watched = plant.assumptions.iter().filter(|assumption| {
+        let assumptions = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation, false));
+        let conditions = conditions.iter().map(|(expr, relation)| (*expr, *relation, true));
+        let watched = assumptions.chain(conditions).filter(|(expr, ..)| {
             let moving: BTreeSet<Symbol> =
-                arena.symbols_of(&[assumption.expr]).into_iter().filter(|used| !parameters.contains(used)).collect();
+                arena.symbols_of(&[*expr]).into_iter().filter(|used| !parameters.contains(used)).collect();
             !moving.is_empty() && moving.is_subset(&table)
         });
         let (expressions, each): (Vec<Expr>, Vec<_>) = watched
-            .map(|assumption| {
-                let text = format!("{} {}", arena.print(assumption.expr), assumption.relation.sign());
-                (assumption.expr, (text, assumption.relation))
+            .map(|(expr, relation, is_condition)| {
+                let text = format!("{} {}", arena.print(expr), relation.sign());
+                (expr, Watched { text, relation, is_condition })
             })
             .unzip();
         Some(Self { program: compile(&expressions)?, each })
@@ -70,7 +84,7 @@ impl AssumedDomain {
     }
 }
 
-/// The assumptions as time goes on.
+/// The assumptions and conditions as time goes on.
 #[derive(Debug)]
 pub(crate) struct DomainMonitor<'a> {
     domain: &'a AssumedDomain,
@@ -87,7 +101,7 @@ impl DomainMonitor<'_> {
     pub(crate) fn look(&mut self, t: f64, table: &[f64]) {
         self.interpreter.run(table, &mut self.values);
         let places = self.values.iter().zip(&self.domain.each).zip(&mut self.largest).zip(&mut self.outside);
-        for (((value, (_, relation)), largest), first) in places {
+        for (((value, Watched { relation, .. }), largest), first) in places {
             *largest = largest.max(value.abs());
             let is_outside = match relation {
                 Relation::Positive => *value == 0.0 || *value < -ROUNDING * *largest,
@@ -100,10 +114,11 @@ impl DomainMonitor<'_> {
         }
     }
 
-    /// The assumptions that did not hold throughout.
+    /// Those that did not hold throughout.
     pub(crate) fn outside(&self) -> Vec<OutsideDomain> {
-        let left = |((assumption, _), first): (&(String, Relation), &Option<(f64, u64)>)| {
-            first.map(|(since, samples)| OutsideDomain { assumption: assumption.clone(), since, samples })
+        let left = |(Watched { text, is_condition, .. }, first): (&Watched, &Option<(f64, u64)>)| {
+            let (assumption, is_condition) = (text.clone(), *is_condition);
+            first.map(|(since, samples)| OutsideDomain { assumption, is_condition, since, samples })
         };
         self.domain.each.iter().zip(&self.outside).filter_map(left).collect()
     }

@@ -171,10 +171,10 @@ impl Summary {
         let all = self.samples + 1;
         let mut lines = Vec::new();
         let mut line = |name: &str, what: &str| lines.push(format!("{name}: {what}"));
-        for OutsideDomain { assumption, since, samples } in &self.outside {
+        for OutsideDomain { assumption, is_condition, since, samples } in &self.outside {
             let since = short(*since);
             line(
-                "outside the domain",
+                if *is_condition { "outside the conditions" } else { "outside the domain" },
                 &format!(
                     "`{assumption}` does not hold from t = {since} s on, in {samples} of {all} samples: nothing is proved there"
                 ),

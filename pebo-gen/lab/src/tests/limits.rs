@@ -211,3 +211,23 @@ fn advice_follows_from_innovation_and_expected_error() {
     let (said, summary) = advice("sensors: {q: 0.1}, start: {v: 1}, disturbance: {v: 0}", "");
     assert!(said.is_empty() && summary.contradiction.is_none(), "{said:?}");
 }
+
+#[test]
+fn a_run_where_a_condition_of_the_verdict_fails_says_so() {
+    let text = "
+model: gain
+x: [a]
+y: [s]
+u: [v]
+f_x: {a: 0}
+g_y: {s: a*v}
+phi: [1/a]
+simulation: {duration: 2, step: 0.01, initial: {a: 0}, control: {v: 1}}
+";
+    let trace = run(text, &Overrides::default());
+    let said = trace.summary().text();
+    let line = "outside the conditions: `a != 0` does not hold from t = 0 s on, in 201 of 201 samples";
+    assert!(said.contains(line), "{said}");
+    let elsewhere = run(&with(text, "initial: {a: 0}", "initial: {a: 1}"), &Overrides::default());
+    assert!(elsewhere.summary().outside.is_empty(), "{:?}", elsewhere.summary().outside);
+}
