@@ -33,12 +33,12 @@ pub struct OutsideDomain {
 pub(crate) struct AssumedDomain {
     /// From the table to the expressions that are compared with 0.
     program: Program,
-    each: Vec<Watched>,
+    each: Vec<Comparison>,
 }
 
 /// A comparison with 0.
 #[derive(Debug)]
-struct Watched {
+struct Comparison {
     text: String,
     relation: Relation,
     is_condition: bool,
@@ -66,7 +66,7 @@ impl AssumedDomain {
         let (expressions, each): (Vec<Expr>, Vec<_>) = watched
             .map(|(expr, relation, is_condition)| {
                 let text = format!("{} {}", arena.print(expr), relation.sign());
-                (expr, Watched { text, relation, is_condition })
+                (expr, Comparison { text, relation, is_condition })
             })
             .unzip();
         Some(Self { program: compile(&expressions)?, each })
@@ -101,7 +101,7 @@ impl DomainMonitor<'_> {
     pub(crate) fn look(&mut self, t: f64, table: &[f64]) {
         self.interpreter.run(table, &mut self.values);
         let places = self.values.iter().zip(&self.domain.each).zip(&mut self.largest).zip(&mut self.outside);
-        for (((value, Watched { relation, .. }), largest), first) in places {
+        for (((value, Comparison { relation, .. }), largest), first) in places {
             *largest = largest.max(value.abs());
             let is_outside = match relation {
                 Relation::Positive => *value == 0.0 || *value < -ROUNDING * *largest,
@@ -116,7 +116,7 @@ impl DomainMonitor<'_> {
 
     /// Those that did not hold throughout.
     pub(crate) fn outside(&self) -> Vec<OutsideDomain> {
-        let left = |(Watched { text, is_condition, .. }, first): (&Watched, &Option<(f64, u64)>)| {
+        let left = |(Comparison { text, is_condition, .. }, first): (&Comparison, &Option<(f64, u64)>)| {
             let (assumption, is_condition) = (text.clone(), *is_condition);
             first.map(|(since, samples)| OutsideDomain { assumption, is_condition, since, samples })
         };
