@@ -163,8 +163,8 @@ impl Domain {
             let sampled = || self.sampled_signs(arena, field.show(fraction));
             Ok::<_, Obstacle>(fraction.to_constant().is_some() || sampled().are_one(&field, fraction)?)
         };
-        let own = field.fraction(expr)?;
-        if own.is_zero() {
+        let whole = field.fraction(expr)?;
+        if whole.is_zero() {
             return Ok(false);
         }
         let mut known = Vec::new();
@@ -176,7 +176,7 @@ impl Domain {
                 known.push(fact);
             }
         }
-        for own in square(&field, &own)?.into_iter().chain([own]) {
+        for own in square(&field, &whole)?.into_iter().chain([whole.clone()]) {
             let mut rest = own.numerator().clone();
             for fact in &known {
                 loop {
@@ -188,7 +188,9 @@ impl Domain {
                     rest = quotient;
                 }
             }
-            if is_signed(&field.of_polynomial(&rest)?)? {
+            // The sign of the expression itself was asked for before this.
+            let left = field.of_polynomial(&rest)?;
+            if left != whole && is_signed(&left)? {
                 return Ok(true);
             }
         }

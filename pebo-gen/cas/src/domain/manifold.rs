@@ -14,7 +14,9 @@
 //! near the values that are drawn: as written, since eliminating symbols makes degrees grow. Only those that give a
 //! symbol which no other holds are steps after that.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use super::certified::System;
 use super::solution::{Partner, Root, Solution, Step};
@@ -39,7 +41,12 @@ pub struct Manifold {
     /// last are constants: they are solved for to find points, never in the normal form.
     groups: Vec<BTreeSet<Symbol>>,
     exact: Solution,
+    /// The plans that were made, by their equations: points of one domain are looked for many times. Copies share them.
+    plans: Plans,
 }
+
+/// Plans by their equations; none where there is no plan.
+type Plans = Rc<RefCell<BTreeMap<Vec<Expr>, Option<Rc<Solution>>>>>;
 
 impl Manifold {
     /// The manifold of these equations. The first of the groups must not occur in results, the last are constants.
@@ -48,7 +55,7 @@ impl Manifold {
         let exact = solver
             .solve(equations.clone())
             .unwrap_or_else(|_| Solution { open: equations.clone(), ..Solution::default() });
-        Self { equations, groups, exact }
+        Self { equations, groups, exact, plans: Plans::default() }
     }
 
     /// The manifold with values of symbols.
@@ -158,11 +165,20 @@ impl Manifold {
     }
 
     /// Steps that complete a point with these values; none where an equation cannot be solved, or cannot hold.
-    pub(crate) fn plan(&self, arena: &Arena, equations: &[Expr], fixed: &Point) -> Option<Solution> {
+    pub(crate) fn plan(&self, arena: &Arena, equations: &[Expr], fixed: &Point) -> Option<Rc<Solution>> {
         let equations = arena.substitute_all(equations, fixed);
+        if let Some(plan) = self.plans.borrow().get(&equations) {
+            return plan.clone();
+        }
         let facts = Facts::new();
-        let solution = Solver { arena, facts: &facts, groups: &self.groups, exact: false }.solve(equations).ok()?;
-        solution.open.is_empty().then_some(solution)
+        let solver = Solver { arena, facts: &facts, groups: &self.groups, exact: false };
+        let solution = solver.solve(equations.clone()).ok();
+        let plan = solution.filter(|solution| solution.open.is_empty()).map(Rc::new);
+        // With more work there may be one.
+        if plan.is_some() || !arena.budget().is_exhausted() {
+            self.plans.borrow_mut().insert(equations, plan.clone());
+        }
+        plan
     }
 }
 
@@ -303,11 +319,13 @@ impl Solver<'_> {
     /// The equation without symbols that cancel, if what it loses vanishes nowhere: `(v - w)/(2*k)` holds where `v - w`
     /// is zero, and so binds no k.
     fn without_idle_symbols(&self, field: &Field<'_>, equation: Expr, fraction: &Fraction) -> Result<Expr, Obstacle> {
-        let numerator = field.show(&field.of_polynomial(fraction.numerator())?);
-        let has_fewer = self.arena.symbols_of(&[numerator]).len() < self.arena.symbols_of(&[equation]).len();
+        let kernels: Vec<Expr> = fraction.numerator().variables().iter().map(|kernel| field.kernel(*kernel)).collect();
+        if self.arena.symbols_of(&kernels).len() >= self.arena.symbols_of(&[equation]).len() {
+            return Ok(equation);
+        }
         let denominator = field.of_polynomial(fraction.denominator())?;
-        let is_safe = has_fewer && (denominator.to_constant().is_some() || field.signs().is_positive(&denominator)?);
-        Ok(if is_safe { numerator } else { equation })
+        let is_safe = denominator.to_constant().is_some() || field.signs().is_positive(&denominator)?;
+        Ok(if is_safe { field.show(&field.of_polynomial(fraction.numerator())?) } else { equation })
     }
 
     /// True if an equation with these symbols may be solved for those of a group: for constants if it holds no others.

@@ -112,10 +112,15 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     // With as many free signals as there may be: walls between cells come last.
     families.sort_by_key(|family| family.domain.manifold.reduced(arena).len());
     let is_all = |values: &BTreeMap<Symbol, Expr>| {
-        let holds = |family: &Domain, (symbol, value): (&Symbol, &Expr)| {
-            is_zero(arena, arena.sub(arena.of_symbol(*symbol), *value), family)
-        };
-        matches!(families.as_slice(), [family] if values.iter().all(|value| holds(&family.domain, value)))
+        let [family] = families.as_slice() else { return false };
+        // Where the family gives the same symbols, its values take their places.
+        let given = family.domain.manifold.values().unwrap_or_default();
+        let there = family.domain.restricted(arena, &given);
+        let there = there.as_ref().unwrap_or(&family.domain);
+        values.iter().all(|(symbol, value)| {
+            let apart = arena.sub(arena.of_symbol(*symbol), *value);
+            is_zero(arena, arena.substitute(apart, &given), there)
+        })
     };
     // Those of all parameters: others are points of no plant of this file.
     let of_signals = |values: &BTreeMap<Symbol, Expr>| {
