@@ -10,7 +10,7 @@ use super::conditions::{Conditions, DomainCondition};
 use super::design::{Cascade, Claim, Class, Derivation, Outcome, Regression, Verdict};
 use super::left_inverse::checking::at_phi;
 use super::limited::{ended, limited, unfinished};
-use super::regression::{self, Premises};
+use super::regression::{self, Claims, Premises};
 use super::{cascade, identities, left_inverse, permitted, turns};
 
 impl Derivation {
@@ -33,22 +33,22 @@ impl Derivation {
             permitted::left_inverse(plant, claim, found)
         });
         let inverse = left_inverse.result.as_ref().filter(|_| left_inverse.verdict == Verdict::Proved);
-        let (mut regression, mut identifiability) = match &cascade.result {
+        let Claims { mut regression, mut identifiability, open: mut unidentified } = match &cascade.result {
             Some(result) if cascade.verdict == Verdict::Proved => {
                 let premises = Premises { plant, domain: &domain, class, cascade: result, left_inverse: inverse };
                 regression::prove(premises, &mut found)
             }
-            _ => (Claim::skipped(), Claim::skipped()),
+            _ => Claims::without_unknowns(Claim::skipped()),
         };
+        // What the conditions leave open.
+        let mut unsettled = Vec::new();
         if let (Some(cascade), Some(regression), Some(inverse)) = (&cascade.result, &regression.result, inverse) {
             let refused = turns::refused(plant, &domain, &turns::Computed { cascade, regression, inverse });
             if !refused.is_empty() {
                 left_inverse.doubt();
-                // Out of budget, nothing is known to be wrong.
-                found.extend(refused.into_iter().filter(|_| !plant.arena.budget().is_exhausted()));
+                unsettled.extend(refused);
             }
         }
-        let settled = found.len();
         let mut conditions = Conditions::of(plant);
         for constant in identifiability.result.iter().flat_map(|result| &result.constants) {
             conditions.list(&plant.arena, (*constant, Relation::NonZero));
@@ -61,26 +61,25 @@ impl Derivation {
             (Code::LeftInverseUndecided, "phi_left", left_inverse.settle(|r| conditions.list_left_inverse(plant, r))),
             (Code::RegressionUndecided, "the regression", regression.settle(|r| conditions.list_regression(plant, r))),
         ];
-        found.extend(
+        unsettled.extend(
             unmet.into_iter().filter_map(|(code, what, condition)| Some(without_value(plant, code, what, condition?))),
         );
         // Without a budget no point is looked for: that takes nothing back.
         let is_found = || is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref());
         if !plant.arena.budget().is_exhausted() && !is_found() {
-            found.push(nowhere(plant));
+            unsettled.push(nowhere(plant));
             cascade.doubt();
             left_inverse.doubt();
             regression.doubt();
             identifiability.doubt();
         }
-        if plant.arena.budget().is_exhausted() {
-            // An undecided claim before this may hold.
-            found.truncate(settled);
+        if ended(plant, &found) && ended(plant, &unidentified) {
+            unidentified = Vec::new();
+            identifiability = unfinished(plant, "the conditions", &mut unidentified);
         }
-        if ended(plant, &found) {
-            found.retain(|diagnostic| diagnostic.code != Code::NeverIdentifiable);
-            identifiability = unfinished(plant, "the conditions", &mut found);
-        }
+        found.extend(unidentified);
+        // Out of budget, nothing of these is known to be wrong.
+        found.extend(unsettled.into_iter().filter(|_| !plant.arena.budget().is_exhausted()));
         let verdicts = [cascade.verdict, left_inverse.verdict, regression.verdict, identifiability.verdict];
         Self {
             outcome: outcome(&verdicts),

@@ -19,13 +19,13 @@ pub(super) fn limited<T>(
     if is_said(found) {
         return Claim::skipped();
     }
-    let before = found.len();
-    let claim = prove(found);
-    if !plant.arena.budget().is_exhausted() {
-        return claim;
+    let mut said = Vec::new();
+    let claim = prove(&mut said);
+    if plant.arena.budget().is_exhausted() {
+        return unfinished(plant, phase, found);
     }
-    found.truncate(before);
-    unfinished(plant, phase, found)
+    found.append(&mut said);
+    claim
 }
 
 /// Tests whether the budget ended since the last claim was proved or refuted in time.

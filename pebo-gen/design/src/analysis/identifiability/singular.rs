@@ -105,13 +105,9 @@ impl<'a> Volume<'a> {
         zero_set: &mut ZeroSet,
     ) -> Result<(), Obstacle> {
         let field = &self.field;
-        let open = |factor: &Poly| -> Result<bool, Obstacle> {
-            let formula = field.show(&field.of_polynomial(factor)?);
-            Ok(!field.signs().never_zero(factor) && !domain.implies(self.arena, formula, Relation::NonZero))
-        };
         let mut shared = false;
         for (factor, _) in fraction.numerator().factored(field.limit())?.factors {
-            if !open(&factor)? {
+            if self.never_zero(&factor, domain)? {
                 continue;
             }
             if field.may_vanish_together(&factor, fraction.denominator())? {
@@ -126,7 +122,7 @@ impl<'a> Volume<'a> {
         // The zeros of a fraction are those of the denominator of its inverse.
         let inverse = field.div(&Fraction::one(), fraction)?;
         for (factor, _) in inverse.denominator().factored(field.limit())?.factors {
-            if !open(&factor)? {
+            if self.never_zero(&factor, domain)? {
                 continue;
             }
             let there = self.solved(&factor, plant)?.and_then(|(kernel, value)| {
@@ -149,8 +145,11 @@ impl<'a> Volume<'a> {
 
     /// Tests whether the assumptions exclude all zeros of a polynomial.
     fn never_zero(&self, poly: &Poly, domain: &Domain) -> Result<bool, Obstacle> {
+        if self.field.signs().never_zero(poly) {
+            return Ok(true);
+        }
         let formula = self.field.show(&self.field.of_polynomial(poly)?);
-        Ok(self.field.signs().never_zero(poly) || domain.implies(self.arena, formula, Relation::NonZero))
+        Ok(domain.implies(self.arena, formula, Relation::NonZero))
     }
 
     /// Adds the zeros of a factor.

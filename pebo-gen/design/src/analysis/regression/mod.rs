@@ -30,15 +30,27 @@ use std::cell::OnceCell;
 use super::design::{Claim, Identifiability, Regression, Verdict};
 use super::identifiability::undecided::not_all_used;
 use super::limited::limited;
-use crate::source::{Code, Diagnostic};
+use crate::source::Diagnostic;
 use build::Obstruction;
 use pool::{Pool, Rest};
 pub(super) use premises::Premises;
 use selection::{Part, Selection, Source};
 use trial::Trial;
 
-/// The diagnostics of unknowns that are not identified.
-const OPEN: [Code; 2] = [Code::NeverIdentifiable, Code::IdentifiabilityUndecided];
+/// The claims on the regression and its unknowns.
+pub(super) struct Claims {
+    pub(super) regression: Claim<Regression>,
+    pub(super) identifiability: Claim<Identifiability>,
+    /// The diagnostics of the identifiability, which a derivation without time to settle it leaves out.
+    pub(super) open: Vec<Diagnostic>,
+}
+
+impl Claims {
+    /// Those without a regression.
+    pub(super) fn without_unknowns(regression: Claim<Regression>) -> Self {
+        Self { regression, identifiability: Claim::skipped(), open: Vec::new() }
+    }
+}
 
 /// What was tried without success.
 #[derive(Default)]
@@ -52,10 +64,7 @@ struct Tried {
 }
 
 /// Proves or refutes both claims.
-pub(super) fn prove(
-    premises: Premises<'_>,
-    found: &mut Vec<Diagnostic>,
-) -> (Claim<Regression>, Claim<Identifiability>) {
+pub(super) fn prove(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
     let pool = Pool::of(premises);
     let mut tried = Tried::default();
     let (first, others) = selection::order(premises.plant);
@@ -80,8 +89,7 @@ pub(super) fn prove(
             }
         };
         if trial.is_identified() && forms::is_chosen(&pool, &trial) {
-            found.extend(trial.said.iter().cloned());
-            return trial.claims();
+            return trial.claims(found);
         }
         match selection {
             (Source::More, _) => tried.strengthened = Some(trial),
@@ -94,18 +102,18 @@ pub(super) fn prove(
 
 impl Tried {
     /// The claims where no selection identifies the unknowns.
-    fn conclude(self, pool: &Pool<'_>, found: &mut Vec<Diagnostic>) -> (Claim<Regression>, Claim<Identifiability>) {
+    fn conclude(self, pool: &Pool<'_>, found: &mut Vec<Diagnostic>) -> Claims {
         let plant = pool.premises.plant;
         let chosen = plant.relation_form.filter(|_| !plant.arena.budget().is_exhausted());
         let is_complete = self.is_complete();
         let Self { given, strengthened, failures, rest } = self;
         if let Some(form) = chosen.filter(|_| !given.as_ref().is_some_and(|given| forms::is_chosen(pool, given))) {
             found.push(diagnostics::no_such_form(plant, form));
-            return (Claim { verdict: Verdict::Undecided, result: None }, Claim::skipped());
+            return Claims::without_unknowns(Claim { verdict: Verdict::Undecided, result: None });
         }
         let Some(mut given) = given else {
             let refuse = |found: &mut Vec<Diagnostic>| refusal::refused(pool, &failures, found);
-            return (limited(plant, "the regression", found, refuse), Claim::skipped());
+            return Claims::without_unknowns(limited(plant, "the regression", found, refuse));
         };
         let is_refuted = given.identifiability.verdict == Verdict::Refuted;
         let says_more =
@@ -113,12 +121,10 @@ impl Tried {
         if let Some(strengthened) = strengthened.filter(says_more) {
             given = strengthened;
         } else if is_refuted && !is_complete && rest.get().is_some() {
-            given.said.retain(|diagnostic| !OPEN.contains(&diagnostic.code));
-            given.said.push(not_all_used(plant));
+            given.open = vec![not_all_used(plant)];
             given.identifiability = Claim { verdict: Verdict::Undecided, result: None };
         }
-        found.append(&mut given.said);
-        given.claims()
+        given.claims(found)
     }
 
     /// Tests whether no equation was left out that could say more of the unknowns.

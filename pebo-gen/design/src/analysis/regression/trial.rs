@@ -1,5 +1,6 @@
 //! A regression of selected equations, with its identifiability.
 
+use super::Claims;
 use super::build::{self, Obstruction};
 use super::equation::Equation;
 use super::premises::Premises;
@@ -14,7 +15,10 @@ pub(super) struct Trial {
     pub(super) equations: Vec<Equation>,
     pub(super) regression: Regression,
     pub(super) identifiability: Claim<Identifiability>,
+    /// The diagnostics of the regression.
     pub(super) said: Vec<Diagnostic>,
+    /// Those of the identifiability.
+    pub(super) open: Vec<Diagnostic>,
 }
 
 impl Trial {
@@ -29,11 +33,12 @@ impl Trial {
         let Some(regression) = claim.result.filter(|_| claim.verdict == Verdict::Proved) else {
             return Err(Obstruction::Refused(claim.verdict, said));
         };
-        let identifiability = limited(plant, "identifiability", &mut said, |said| {
+        let mut open = Vec::new();
+        let identifiability = limited(plant, "identifiability", &mut open, |open| {
             let domain = where_valued(plant, domain, (cascade, left_inverse, &regression));
-            identifiability::prove(plant, &domain, cascade, &regression, left_inverse, said)
+            identifiability::prove(plant, &domain, cascade, &regression, left_inverse, open)
         });
-        Ok(Self { equations, regression, identifiability, said })
+        Ok(Self { equations, regression, identifiability, said, open })
     }
 
     pub(super) fn is_identified(&self) -> bool {
@@ -52,7 +57,10 @@ impl Trial {
         self.is_at_once() || self.is_identified() && trajectories.is_some_and(|t| t.by_itself == Some(true))
     }
 
-    pub(super) fn claims(self) -> (Claim<Regression>, Claim<Identifiability>) {
-        (Claim { verdict: Verdict::Proved, result: Some(self.regression) }, self.identifiability)
+    /// The claims; `found` gets the diagnostics of the regression.
+    pub(super) fn claims(mut self, found: &mut Vec<Diagnostic>) -> Claims {
+        found.append(&mut self.said);
+        let regression = Claim { verdict: Verdict::Proved, result: Some(self.regression) };
+        Claims { regression, identifiability: self.identifiability, open: self.open }
     }
 }
