@@ -386,8 +386,8 @@ pub(in crate::emit) fn group(group: &Group, definitions: &Definitions) -> &'stat
         }
         "theta" => "The constant `theta`, from the unknowns of the regression.",
         FUNCTIONS => {
-            "The unknowns `eta` of the regression as functions of `theta`, among whose values an observer keeps its \
-             estimate, and their derivatives, written by columns: one for each component of `theta`."
+            "The unknowns `eta` of the regression as functions of `theta`, and their derivatives, written by columns: one for \
+             each component of `theta`. The estimate is the nearest of these values."
         }
         TRANSFORM => {
             "The transform `phi` as a function of the recovered states, and its derivatives, written by columns: one for each \
