@@ -172,6 +172,11 @@ where
     ) -> Result<M::X, Fault> {
         self.arrivals.take(y, [delays, &self.past.model().periods()], u, dt);
         while let Some(instant) = self.arrivals.whole() {
+            // The first sample must have all outputs: what comes before it is not of this observer's time.
+            if self.past.terms().is_none() && !instant.is_complete() {
+                self.arrivals.pass();
+                continue;
+            }
             if let Err(fault) = self.past.take_instant(&instant, &self.late) {
                 self.arrivals.skip();
                 return Err(fault);

@@ -397,25 +397,30 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let extension = self.model.begin(&self.state.extension, &terms);
         let theta = self.model.theta(&self.state.estimator.estimate());
-        let start = self.model.recover(&extension.coordinates(&theta), &terms);
-        if !extension.is_finite() {
-            return Err(Fault::State);
-        }
+        let z = extension.coordinates(&theta);
+        let start = self.model.recover(&z, &terms);
         // An observer begins also where its start has a state and the sample leads to none.
         let learned = self.learned_at_once(&extension, &terms, &Taken::whole(y, [u, u], dt));
         let learned = learned.and_then(|(estimator, regression)| {
             let estimate = self.state_of(&extension, &estimator, &terms);
             all_finite(&estimate).then_some((estimator, regression, estimate))
         });
-        let estimate = match learned {
-            Some((estimator, regression, estimate)) => {
-                self.state.estimator = estimator;
-                self.state.regression.take(regression);
-                estimate
-            }
-            None if all_finite(&start) => start,
+        let (estimate, learned) = match learned {
+            Some((estimator, regression, estimate)) => (estimate, Some((estimator, regression))),
+            None if all_finite(&start) => (start, None),
             None => return Err(Fault::Estimate),
         };
+        // An interval begins where the one before ended: from a sample without rates none would lead on.
+        let flow = self.model.flow_near(&terms, u, &z);
+        let sides = self.model.regression(&extension, &terms, u);
+        let rates = blemish(&flow.h) + blemish(&flow.lambda) + blemish(&sides.known) + blemish(&sides.factor);
+        if !extension.is_finite() || !is_none(rates) {
+            return Err(Fault::State);
+        }
+        if let Some((estimator, regression)) = learned {
+            self.state.estimator = estimator;
+            self.state.regression.take(regression);
+        }
         self.state.extension = extension;
         self.state.y = Some(*y);
         self.terms = Some(terms);

@@ -1,9 +1,10 @@
 //! The transform of an observer whose components depend on one another.
 //!
-//! In: a plant with its proved left inverse and regression. Out: the components of phi with their derivatives by the
-//! recovered states, if they satisfy an equation in which neither outputs nor parameters occur, as `x1`, `x2` and
-//! `x1*x2` do: the observer estimates them as if they were independent, and its estimate of the states is better where it
-//! counts this. An equation with parameters is left to the regression: it holds no better than these are known.
+//! In: a plant with its proved claims. Out: the components of phi with their derivatives by the recovered states, if they
+//! satisfy an equation, as `x1`, `x2` and `x1*x2` do: the observer estimates them as if they were independent, and its
+//! estimate of the states is better where it counts this. The equation may hold outputs that are states of the observer,
+//! and parameters that the observer computes with. One with others is left to the regression: it is as noisy as samples
+//! are, or holds no better than these parameters are known.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +12,7 @@ use crate::plant::Plant;
 use pebo_cas::linear::rank::{full_rank, proved_rank};
 use pebo_cas::{Expr, Symbol};
 
-use super::design::{LeftInverse, Regression};
+use super::design::{Cascade, LeftInverse, Regression};
 
 /// Components of phi that depend on one another.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ pub struct RelatedTransform {
 
 impl RelatedTransform {
     /// The transform of a plant; none unless its components are related and the left inverse gives all that they depend on.
-    pub fn of(plant: &Plant, left_inverse: &LeftInverse, regression: &Regression) -> Option<Self> {
+    pub fn of(plant: &Plant, cascade: &Cascade, left_inverse: &LeftInverse, regression: &Regression) -> Option<Self> {
         let arena = &plant.arena;
         let states: Vec<Symbol> = left_inverse.x.iter().map(|(state, _)| *state).collect();
         let phi = plant.transform();
@@ -40,11 +41,19 @@ impl RelatedTransform {
             phi.iter().map(|phi| symbols.iter().map(|symbol| arena.derivative(*phi, *symbol)).collect()).collect()
         };
         let domain = plant.domain();
-        let all: Vec<Symbol> = symbols.into_iter().collect();
-        // The rank by all symbols is that by the states: all equations among the components are free of the others.
+        let computed: Vec<Expr> = [&cascade.h, &regression.phi_0].into_iter().flatten().copied().collect();
+        let factors = cascade.lambda.iter().chain([&regression.phi_1]).flatten().flatten().copied();
+        let used = arena.symbols_of(&computed.into_iter().chain(factors).collect::<Vec<_>>());
+        let estimated = regression.outputs_with_rates(plant).unwrap_or_default();
+        let is_estimated = |symbol: &Symbol| estimated.iter().any(|output| plant.y[*output].symbol == *symbol);
+        let is_output = |symbol: &Symbol| plant.y.iter().any(|output| output.symbol == *symbol);
+        let admitted = |symbol: &Symbol| if is_output(symbol) { is_estimated(symbol) } else { used.contains(symbol) };
+        let others: Vec<Symbol> =
+            symbols.into_iter().filter(|symbol| recovered.contains(symbol) || !admitted(symbol)).collect();
+        // The rank by these symbols is that by the states: all equations among the components are free of the others.
         let slopes = by(&states);
         let is_related = full_rank(arena, &domain, &slopes, states.len())
-            && proved_rank(arena, &domain, &by(&all), all.len()) == states.len();
+            && proved_rank(arena, &domain, &by(&others), others.len()) == states.len();
         is_related.then_some(Self { phi, slopes })
     }
 }
@@ -62,8 +71,9 @@ mod tests {
         let plant = Plant::resolve(&Model::parse(&Source::new("m", text).unwrap()).unwrap()).unwrap();
         let derivation = Derivation::derive(&plant);
         let claims = (derivation.left_inverse.result.as_ref(), derivation.regression.result.as_ref());
+        let cascade = derivation.cascade.result.as_ref().unwrap();
         let (Some(left_inverse), Some(regression)) = claims else { panic!("{:?}", derivation.diagnostics) };
-        let found = RelatedTransform::of(&plant, left_inverse, regression)?;
+        let found = RelatedTransform::of(&plant, cascade, left_inverse, regression)?;
         Some(found.phi.iter().map(|phi| plant.arena.print(*phi)).collect())
     }
 
@@ -78,6 +88,14 @@ mod tests {
         let epidemic = "x: [S, b, g]\ny: [I]\nu: [v]\nassume: [S > 0, I > 0, b > 0, g > 0]\n\
             f_x: {S: -b*S*I - v*S, b: 0, g: 0}\nf_y: {I: b*S*I - g*I}\nphi: [S*b + I*b, b, g, b*g]";
         assert_eq!(of(epidemic).unwrap(), ["S*b + I*b", "b", "g", "b*g"]);
+    }
+
+    #[test]
+    fn outputs_and_parameters_of_the_observer_may_be_in_the_relation() {
+        // `z1 = z2*(k*z3 + y)`: y is a state of the observer, and k is in its cascade.
+        let winding = "x: [a, p]\ny: [y]\nu: [v]\nassume: [a > 0]\nf_x: {a: 0, p: a*(y - p)}\n\
+            f_y: {y: v - k*a*(y - p)}\nphi: [a*(k*p + y), a, p]";
+        assert_eq!(of(winding).map(|phi| phi.len()), Some(3));
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl Design {
                 Some(slopes) => Some(compile(&[&plant.theta], &sides(&regression.eta, &slopes))?),
                 None => None,
             },
-            transform: match RelatedTransform::of(plant, inverse, regression) {
+            transform: match RelatedTransform::of(plant, cascade, inverse, regression) {
                 Some(RelatedTransform { phi, slopes }) => {
                     let recovered: Vec<Symbol> = inverse.x.iter().map(|(state, _)| *state).collect();
                     Some(compile(&[&recovered, &y], &sides(&phi, &slopes))?)

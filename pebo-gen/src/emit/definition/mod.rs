@@ -244,7 +244,7 @@ impl<'a> Definitions<'a> {
             functions.push(vector(ETA, "NE", regression.eta.clone()));
             functions.push(matrix(SLOPES, "NE", "NZ", &slopes));
         }
-        let related = RelatedTransform::of(plant, left_inverse, &regression);
+        let related = RelatedTransform::of(plant, cascade, left_inverse, &regression);
         let mut x = Vec::new();
         if let Some(RelatedTransform { phi, slopes }) = related {
             x = left_inverse.x.iter().map(|(state, _)| *state).collect();

@@ -128,3 +128,18 @@ fn bad_rows_and_deviations_are_refused() {
     }
     assert_eq!(of(0, 0.0), Ok(()));
 }
+
+/// Every interval begins with the sample before: one whose rates have no value leads nowhere.
+#[test]
+fn a_first_sample_without_rates_is_refused() -> Result<(), Fault> {
+    let squares = LeastSquares::diagonal(&Vector2::new(SIGMA * SIGMA, 1.0), 0.0)?;
+    let sampled = SampledRegression::new(&Vector1::new(SIGMA))?;
+    for form in [expecting()?, OutputForm::new(Tank)] {
+        let mut observer = Observer::with_regression(form, squares, sampled, Vector2::zeros())?;
+        assert_eq!(observer.step(Vector1::new(-1.0), Vector1::zeros(), 0.1), Err(Fault::State));
+        for _ in 0..2 {
+            observer.step(Vector1::new(1.0), Vector1::zeros(), 0.1)?;
+        }
+    }
+    Ok(())
+}

@@ -147,6 +147,25 @@ fn samples_count_for_the_time_that_they_are_of() {
     assert!(short < 0.02, "{short}");
 }
 
+/// The first output comes with every tenth sample, four periods old: until the first of them nothing is refused, and the
+/// time before it is nobody's.
+#[test]
+fn a_slow_and_late_output_begins_the_observer_with_its_first_sample() {
+    let states = run(600, DT);
+    let mut observer = observer::<f64, 16>(DT * 4.0, 0.0);
+    let mut error = f64::NAN;
+    for (k, (state, u)) in states.iter().enumerate() {
+        let first = if k % 10 == 0 && k >= 4 { late_output(&states, k, 4) } else { f64::NAN };
+        let estimate = observer.step_partly([first, state[1]], [*u], DT).unwrap();
+        if k < 10 {
+            assert!(estimate.amax() == 0.0, "{k}: {estimate}");
+        }
+        error = (estimate - state.fixed_rows::<2>(2)).norm();
+    }
+    // As with a late output at each sample; a tenth of the samples lets more of the start remain.
+    assert!(error < 1e-2, "{error}");
+}
+
 /// The plant with its past: (p, s, v, b) now and of seven samples before.
 const PAST: usize = 32;
 
