@@ -87,7 +87,7 @@ fn equilibria_are_listed_too_where_inputs_have_to_vary() {
     lists(
         cell,
         &[
-            "while `I` is constant, only `z1`, `z2 - I*z3` is identified",
+            "while `I` is constant, only `z1`, `z2 - I*z3` are identified",
             "while the plant rests, only `z2 - V*z1 - I*z3` is identified",
         ],
     );

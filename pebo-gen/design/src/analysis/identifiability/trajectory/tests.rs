@@ -248,7 +248,7 @@ fn losses_on_each_side_of_a_non_smooth_point_are_listed() {
 /// "At rest" is said of equilibria that the plant has, and of the rank on them.
 #[test]
 fn equilibria_are_those_of_the_plant() {
-    let moves = "the unknowns are identified while the plant moves, also with constant inputs";
+    let moves = "the unknowns are identified while the plant moves";
     let almost = "the unknowns are identified on almost every trajectory, also with constant inputs";
     let growth = "x: [a, k]\ny: [s]\nassume: [a > 0]\nf_x: {a: (s - 1)*a, k: 0}\nf_y: {s: k - a}\nphi: [a, k]";
     assert_eq!(of(growth)[..2], [moves, "while the plant rests, only `z2 - z1` is identified"]);
@@ -287,14 +287,14 @@ fn trajectories_that_hide_more_than_others_are_listed() {
     assert_eq!(
         spring("a*q - b*q^3")[1..],
         [
-            "while the plant rests, only `z1`, `z2 + q^2*z3` is identified",
+            "while the plant rests, only `z1`, `z2 + q^2*z3` are identified",
             "while the plant rests and `q = 0`, only `z1` is identified"
         ]
     );
     // At q = 0 the combination is b.
     assert_eq!(
         spring("a*sin(q) - b*cos(q)")[1..],
-        ["while the plant rests, only `z1`, `z3*cos(q) + z2*sin(q)` is identified"]
+        ["while the plant rests, only `z1`, `z3*cos(q) + z2*sin(q)` are identified"]
     );
     let mass = "x: [m, k]\ny: [q, v]\nu: [f]\nf_x: {m: 0, k: 0}\nf_y: {q: v, v: m*f - k*q}\nphi: [m, k]";
     assert_eq!(
@@ -345,7 +345,7 @@ fn combinations_span_what_is_identified_at_every_point() {
                  phi: [K, R, T]";
     let lines = of(motor);
     assert!(
-        lines.contains(&"while the plant rests, only `i*z2 + w*z1`, `i*z1 - z3` is identified".to_owned()),
+        lines.contains(&"while the plant rests, only `i*z2 + w*z1`, `i*z1 - z3` are identified".to_owned()),
         "{lines:?}"
     );
     // Any two of three say less where a component of the field is zero.

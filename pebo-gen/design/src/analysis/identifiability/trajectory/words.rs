@@ -15,6 +15,7 @@ impl Trajectories {
 
     /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
+        let has_no_inputs = plant.commanded().next().is_none();
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => self.of_cells(),
             (Some(true), true, true) if self.blind.is_empty() => {
@@ -30,7 +31,9 @@ impl Trajectories {
                 "the unknowns are identified without excitation by the inputs on almost every trajectory, and almost wherever \
                  the plant rests"
             }
+            (Some(true), false, true) if has_no_inputs => "the unknowns are identified while the plant moves",
             (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
+            (Some(true), false, false) if has_no_inputs => "the unknowns are identified on almost every trajectory",
             (Some(true), false, false) => {
                 "the unknowns are identified on almost every trajectory, also with constant inputs"
             }
@@ -107,8 +110,14 @@ impl BlindTrajectory {
         }
         let identifiable =
             if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
-        let rest = if self.determines_theta { ", which determines theta near almost every value" } else { "" };
-        format!("while {condition}, {identifiable} is identified{rest}")
+        let are_several = self.identifiable.len() > 1;
+        let rest = match (self.determines_theta, are_several) {
+            (false, _) => "",
+            (true, false) => ", which determines theta near almost every value",
+            (true, true) => ", which determine theta near almost every value",
+        };
+        let verb = if are_several { "are" } else { "is" };
+        format!("while {condition}, {identifiable} {verb} identified{rest}")
     }
 }
 
@@ -122,7 +131,8 @@ impl TrajectoryCondition {
             }
             Still::Inputs(inputs) => {
                 let names: Vec<String> = inputs.iter().map(|input| format!("`{}`", plant.arena.name(*input))).collect();
-                Some(format!("{} is constant", names.join(", ")))
+                let verb = if names.len() > 1 { "are" } else { "is" };
+                Some(format!("{} {verb} constant", names.join(", ")))
             }
             Still::Plant => Some("the plant rests".to_owned()),
         };
