@@ -97,6 +97,11 @@ where
         let Some(before) = &self.terms else { return Ok(Innovation::nothing()) };
         let terms = self.model.terms(&self.unwrapped(&y));
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
+        self.innovation_of(&outcome, dt)
+    }
+
+    /// The innovation of an outcome.
+    fn innovation_of(&self, outcome: &R::Step, dt: M::Scalar) -> Result<Innovation<M::Scalar, NR>, Fault> {
         let regressor = outcome.regressor();
         let error = outcome.regressand() - regressor * self.state.estimator.estimate();
         let root = regressor * self.state.estimator.covariance_root(dt).ok_or(Fault::State)?;
@@ -145,17 +150,40 @@ where
         dt: M::Scalar,
     ) -> Result<M::X, Fault> {
         let (y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
-        let is_missing = |output: &usize| y.get(*output).is_some_and(|output| !Real::is_finite(*output));
-        if let Some(index) = (0..NY).find(|output| is_missing(output) && !rows.contains(output)) {
-            return Err(Fault::Output { index });
-        }
+        check_rows(&y, rows)?;
         self.step_lacking(y, (rows, &[true; NY]), &u, dt).map(M::X::from)
     }
 
-    /// The same; in place of a missing output that is not expected by its row the last one stands.
+    /// The [innovation](Self::innovation) of a sample that lacks outputs, in the rows that it has, without taking it; to
+    /// be called before a [`step_partly`](Self::step_partly) with the same arguments.
+    ///
+    /// # Errors
+    /// A [`Fault`] as of that step, and [`Fault::State`] where the covariance has no finite value.
+    pub fn innovation_partly(
+        &self,
+        y: impl Into<M::Y>,
+        rows: &[usize; NR],
+        u: impl Into<M::U>,
+        dt: M::Scalar,
+    ) -> Result<Innovation<M::Scalar, NR>, Fault>
+    where
+        E: Uncertain<M::Scalar, NE>,
+    {
+        let (y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
+        check_rows(&y, rows)?;
+        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
+            check(&y, &u, dt)?;
+            return Ok(Innovation::nothing());
+        };
+        let (y, left_out) = self.completed((before, last), y, (rows, &[true; NY]), &u, dt)?;
+        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        self.innovation_of(&outcome.without(&left_out), dt)
+    }
+
+    /// The step; in place of a missing output that is not expected by its row the last one stands.
     pub(super) fn step_lacking(
         &mut self,
-        mut y: SVector<M::Scalar, NY>,
+        y: SVector<M::Scalar, NY>,
         (rows, is_expected): (&[usize; NR], &[bool; NY]),
         u: &SVector<M::Scalar, NU>,
         dt: M::Scalar,
@@ -164,6 +192,25 @@ where
             check(&y, u, dt)?;
             return self.advance(&y, [u, u], dt);
         };
+        let (y, left_out) = self.completed((before, last), y, (rows, is_expected), u, dt)?;
+        let terms = self.model.terms(&y);
+        if let Some((trigger, step)) = self.rebasing {
+            return step(self, trigger, terms, &Taken { y: &y, u: [u, u], dt, left_out, without: Rows::without });
+        }
+        let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
+        self.finish((extension, regression.without(&left_out)), terms, &y, dt)
+    }
+
+    /// A sample with what is expected of its missing outputs, from the terms and outputs of the last one; and the rows that
+    /// are left out for them.
+    fn completed(
+        &self,
+        (before, last): (&M::Terms, &SVector<M::Scalar, NY>),
+        mut y: SVector<M::Scalar, NY>,
+        (rows, is_expected): (&[usize; NR], &[bool; NY]),
+        u: &SVector<M::Scalar, NU>,
+        dt: M::Scalar,
+    ) -> Result<(SVector<M::Scalar, NY>, [bool; NR]), Fault> {
         let missing = y.map(|output| !Real::is_finite(output));
         // The last sample's, then the model's prediction from it.
         (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
@@ -182,11 +229,12 @@ where
             }
         }
         check(&y, u, dt)?;
-        let terms = self.model.terms(&y);
-        if let Some((trigger, step)) = self.rebasing {
-            return step(self, trigger, terms, &Taken { y: &y, u: [u, u], dt, left_out, without: Rows::without });
-        }
-        let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
-        self.finish((extension, regression.without(&left_out)), terms, &y, dt)
+        Ok((y, left_out))
     }
+}
+
+/// A missing output must have a row.
+fn check_rows<S: Real, const NY: usize, const NR: usize>(y: &SVector<S, NY>, rows: &[usize; NR]) -> Result<(), Fault> {
+    let is_lacking = |output: &usize| !Real::is_finite(y[*output]) && !rows.contains(output);
+    (0..NY).find(is_lacking).map_or(Ok(()), |index| Err(Fault::Output { index }))
 }

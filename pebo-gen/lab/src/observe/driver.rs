@@ -82,16 +82,8 @@ impl ObserverDriver {
     pub(crate) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
         self.unjudged += 1;
-        if self.unjudged >= self.interval
-            && self.gap.is_none()
-            && !is_parted
-            && let Some(Judgement { square, likelihood }) = self.observer.judge(y, u, dt)
-        {
-            self.unjudged = 0;
-            self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
-            self.typical += square.min(OUTSTANDING);
-            self.likelihood += likelihood;
-        }
+        let is_due = self.unjudged >= self.interval && self.gap.is_none();
+        let judgement = is_due.then(|| self.observer.judge(y, u, dt)).flatten();
         let taken = match &self.gap {
             None => self.observer.sample(y, u, dt, hat),
             Some(gap) => {
@@ -102,6 +94,13 @@ impl ObserverDriver {
                 })
             }
         };
+        // An outlier that is refused says nothing of the numbers.
+        if let Some(Judgement { square, likelihood }) = judgement.filter(|_| !matches!(taken, Err(Fault::Outlier))) {
+            self.unjudged = 0;
+            self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
+            self.typical += square.min(OUTSTANDING);
+            self.likelihood += likelihood;
+        }
         let fault = match taken {
             Ok(has_state) => {
                 (self.gap, self.started, self.refused) = (None, true, 0);

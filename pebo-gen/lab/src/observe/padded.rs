@@ -150,10 +150,18 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Running<X, K, N
         }
     }
 
-    fn innovation(&self, y: &[f64], u: &[f64], dt: f64) -> Result<Innovation<f64, N>, Fault> {
-        match self {
-            Self::OnTime(observer) => observer.innovation(pad(y), pad(u), dt),
-            Self::Late(late) => late.innovation(pad(y), pad(u), dt),
+    /// That of a sample that lacks outputs is known of an observer that waits for none.
+    fn innovation(
+        &self,
+        y: &[f64],
+        parted: Option<[usize; N]>,
+        u: &[f64],
+        dt: f64,
+    ) -> Result<Innovation<f64, N>, Fault> {
+        match (self, parted) {
+            (Self::OnTime(observer), None) => observer.innovation(pad(y), pad(u), dt),
+            (Self::OnTime(observer), Some(rows)) => observer.innovation_partly(pad(y), &rows, pad(u), dt),
+            (Self::Late(late), _) => late.innovation(pad(y), pad(u), dt),
         }
     }
 
@@ -229,6 +237,11 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
                 Operator::Filter(_) | Operator::Window(_) => Vec::new(),
             },
         })
+    }
+
+    /// The rows of a sample that lacks outputs, where it may.
+    fn parted(&self, y: &[f64]) -> Option<[usize; N]> {
+        self.rows.filter(|_| y.iter().any(|output| output.is_nan()))
     }
 
     /// The estimate of z with the present extension.
@@ -339,9 +352,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
                 checked => checked?,
             }
         }
-        let parted = self.rows.filter(|_| y.iter().any(|output| output.is_nan()));
-        if let (Some(gate), None) = (&mut self.gate, parted) {
-            gate.admit(&self.observer.innovation(y, u, dt)?)?;
+        let parted = self.parted(y);
+        let waits = matches!(self.observer, Running::Late(_)) && parted.is_some();
+        if let Some(gate) = self.gate.as_mut().filter(|_| !waits) {
+            gate.admit(&self.observer.innovation(y, parted, u, dt)?)?;
         }
         let estimate = if self.uncertainty.is_some() {
             let before = self.observer.now().terms().map(|before| (*before, self.independent_now()));
@@ -375,7 +389,13 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
     }
 
     fn judge(&self, y: &[f64], u: &[f64], dt: f64) -> Option<Judgement> {
-        let innovation = self.is_certain.then(|| self.observer.innovation(y, u, dt).ok())??;
+        let parted = self.parted(y);
+        // With the noise of samples elsewhere, that of a sample which lacks outputs is not predicted.
+        let is_known = self.is_certain && (parted.is_none() || self.uncertainty.is_none());
+        let innovation = is_known.then(|| self.observer.innovation(y, parted, u, dt).ok())??;
+        let is_present =
+            |row: &usize| parted.is_none_or(|rows| y.get(rows[*row]).is_none_or(|output| !output.is_nan()));
+        let present: Vec<usize> = (0..self.sizes.1).filter(is_present).collect();
         let now = self.observer.now();
         let Surprise { square, determinant } = match (&self.uncertainty, now.terms()) {
             (Some(uncertainty), Some(before)) => {
@@ -386,9 +406,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
             _ if self.is_pending(&innovation) => return None,
             _ => Surprise { square: innovation.normalised_square, determinant: innovation.determinant },
         };
-        let likelihood =
-            -0.5 * (square + determinant.ln()) - self.weights.iter().map(|weight| weight.ln()).sum::<f64>();
-        Some(Judgement { square: square / crate::timing::real(u64::try_from(self.sizes.1).ok()?), likelihood })
+        let weights = present.iter().filter_map(|row| self.weights.get(*row));
+        let likelihood = -0.5 * (square + determinant.ln()) - weights.map(|weight| weight.ln()).sum::<f64>();
+        let count = crate::timing::real(u64::try_from(present.len()).ok()?);
+        (!present.is_empty()).then(|| Judgement { square: square / count, likelihood })
     }
 
     fn restarts(&self) -> u64 {
