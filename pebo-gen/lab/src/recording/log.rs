@@ -246,8 +246,12 @@ impl<'a> Log<'a> {
     }
 
     /// The first rows, as many as are there up to `most`, which are read again afterwards: the numbers of the `wanted`
-    /// columns, NaN for cells without one. A row that cannot be read ends them.
-    pub(super) fn head(&mut self, wanted: &[usize], most: usize) -> std::io::Result<Vec<Vec<f64>>> {
+    /// columns, NaN for cells without one. A row that cannot be read ends them, with the reason.
+    pub(super) fn head(
+        &mut self,
+        wanted: &[usize],
+        most: usize,
+    ) -> std::io::Result<(Vec<Vec<f64>>, Option<Unreadable>)> {
         let mut text = Vec::new();
         for _ in 0..most {
             let limit = u64::try_from(LONGEST).unwrap_or(u64::MAX);
@@ -264,12 +268,16 @@ impl<'a> Log<'a> {
         let (first, has_begun) = (self.values.first.clone(), self.has_begun);
         let mut rows = Vec::new();
         let mut numbers = vec![f64::NAN; wanted.len()];
-        while let Ok(Next::Row(_)) = self.next(wanted, &mut numbers, |_, _, _| {}) {
-            rows.push(numbers.clone());
-        }
+        let unreadable = loop {
+            match self.next(wanted, &mut numbers, |_, _, _| {}) {
+                Ok(Next::Row(_)) => rows.push(numbers.clone()),
+                Ok(_) => break None,
+                Err(unreadable) => break Some(unreadable),
+            }
+        };
         std::mem::swap(&mut self.lines, &mut lines);
         (self.values.first, self.has_begun) = (first, has_begun);
-        Ok(rows)
+        Ok((rows, unreadable))
     }
 
     /// Reads a row: the numbers of the `wanted` columns, NaN for blank cells, each of which is passed to `blank`.

@@ -73,7 +73,7 @@ impl Signals {
     /// not show where an observer begins whose gains follow from that are reported.
     pub(super) fn shown(&self, request: &Request, log: &mut Log, problems: &mut Diagnostics) -> Option<Shown> {
         let plant = request.plant;
-        let rows = log.head(&self.wanted, HEAD).unwrap_or_default();
+        let (rows, unreadable) = log.head(&self.wanted, HEAD).unwrap_or_default();
         let mut interpreter = Interpreter::new(&self.program);
         let mut values = vec![0.0; self.program.outputs.len()];
         let signals = self.measured.iter().map(|state| plant.x[*state].symbol);
@@ -91,6 +91,10 @@ impl Signals {
         let mut needed = samples.iter().skip(self.measured.len());
         let unknown = needed.find(|(_, values)| !values.iter().any(|value| value.is_finite()));
         let needed = unknown.filter(|_| !request.model.observer.has_gains() && request.model.simulation.is_none());
+        if let (Some(_), Some(unreadable)) = (needed, &unreadable) {
+            problems.push(unreadable.explain(log.name()));
+            return None;
+        }
         if let Some((signal, _)) = needed {
             let (name, signal) = (log.name(), plant.arena.name(*signal));
             let message = match rows.len() {

@@ -165,11 +165,12 @@ fn at_rest(scored: &EstimateScore) -> String {
     format!("the error of `{state}` hardly falls any more: its root mean square at the end is {rms}")
 }
 
-/// True if the observer takes its plant for undisturbed: then its estimates become ever better.
+/// True if the observer takes its plant for undisturbed, or for as much disturbed as samples show: then a lower number
+/// averages no more of them.
 fn is_undisturbed(summary: &Summary) -> bool {
     let numbers = summary.known.iter().flat_map(|known| &known.numbers);
     let mut disturbances = numbers.filter(|numbers| numbers.what == KnownNumbers::DISTURBANCE);
-    disturbances.all(|numbers| numbers.values.iter().all(|value| value.value == 0.0))
+    disturbances.all(|numbers| numbers.assumed || numbers.values.iter().all(|value| value.value == 0.0))
 }
 
 /// The advice on an observer that expects its samples and the errors of its estimates.
@@ -224,16 +225,19 @@ fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, di
                 .help(help)
         }
         (None, _) => {
-            let shown = match summary.surprise.filter(|square| square > CREDIBLE.end()) {
+            let (shown, help) = match summary.surprise.filter(|square| square > CREDIBLE.end()) {
                 // What is typical of them does not contradict the numbers.
-                Some(square) => format!(
-                    "most innovations are as expected, but some so large that their normalised square is {} on average: the \
-                     plant does more than its model says, or samples are off by far",
-                    short(square)
+                Some(square) => (
+                    format!(
+                        "most innovations are as expected, but some so large that their normalised square is {} on average: \
+                         the plant does more than its model says, or samples are off by far",
+                        short(square)
+                    ),
+                    format!("`gate: 25` under `observer` refuses samples that are off by far; else {mended}"),
                 ),
-                None => "the innovations are as expected: the outputs do not show this error".to_owned(),
+                None => ("the innovations are as expected: the outputs do not show this error".to_owned(), mended),
             };
-            diagnostic.note(note + &departed).note(shown).help(mended)
+            diagnostic.note(note + &departed).note(shown).help(help)
         }
     }
 }

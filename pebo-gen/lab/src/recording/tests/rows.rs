@@ -263,6 +263,11 @@ fn rows_that_show_no_start_are_reported() {
     for (recording, expected) in [
         ("t,q,f\n", "log.csv has no rows"),
         ("t,q,f\n0,,0\n0.1,nan,0\n", "none of the first 2 rows of log.csv has a value of `q`"),
+        ("t,q,f\n0,0,ERR\n0.1,0,0\n", "log.csv, line 2, column 3: `ERR` in the column `f` is not a number"),
+        (
+            "t,q,f\n27.11.2026 10:00,0,0\n28.11.2026 10:00,0,0\n",
+            "log.csv, line 2, column 1: `27.11.2026 10:00` in the column `t` is not a number",
+        ),
     ] {
         let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
         let found = resolve(&silent, &mut log).expect_err("nothing is shown");
