@@ -3,13 +3,16 @@
 //! In: a domain and an expression. Out: yes, if a fact, algebra over the facts and the equations, or an enclosure over
 //! the box that they state proves it; an undecided sign is not proved.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Symbol};
 use crate::graph::function::Function;
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Domain, Facts, Rational, Relation};
+
+/// The most sums of facts that are looked at for one.
+const MOST_SUMS: usize = 100;
 
 /// The signs that a value has at some points.
 #[derive(Default)]
@@ -62,9 +65,25 @@ impl Domain {
             || divides()
             || (signed && self.sign_over_box(arena, expr).is_some_and(|is| is || relation == Relation::NonZero))
             || (signed
-                && (self.implies_on_both_sides(arena, expr, relation)
+                && (self.implies_by_order(arena, expr, relation)
+                    || self.implies_on_both_sides(arena, expr, relation)
                     || self.implies_of_combined_angles(arena, expr, relation)
                     || self.implies_by_values(arena, expr, relation)))
+    }
+
+    /// True if the expression is a sum of facts: `a` is positive where `a > b`, `b > c` and `c > 0`.
+    fn implies_by_order(&self, arena: &Arena, expr: Expr, relation: Relation) -> bool {
+        let signed = self.facts.iter().filter(|(_, relation)| *relation != Relation::NonZero);
+        let (sums, others): (Vec<_>, Vec<_>) =
+            signed.partition(|(fact, _)| matches!(arena.node(*fact), Node::Sum(sum) if sum.terms.len() > 1));
+        // Without a comparison of two expressions the facts are these themselves.
+        let is_sum = |expr: Expr, relation| {
+            !sums.is_empty() && is_sum_of_facts(arena, (expr, relation), &[sums.as_slice(), &others].concat())
+        };
+        match relation {
+            Relation::NonZero => [expr, arena.neg(expr)].into_iter().any(|expr| is_sum(expr, Relation::Positive)),
+            _ => is_sum(expr, relation),
+        }
     }
 
     /// True if the expression compares so with the values that the equations give of symbols in it and in the facts:
@@ -222,6 +241,30 @@ impl Arena {
     }
 }
 
+/// True if an expression is a sum of these facts, and one of them is positive if it has to be. What is left after a fact
+/// holds no more symbols than before, and is met once: differences of symbols have few others.
+fn is_sum_of_facts(arena: &Arena, whole: (Expr, Relation), facts: &[(Expr, Relation)]) -> bool {
+    let count = |expr: Expr| arena.symbols_of(&[expr]).len();
+    let (mut met, mut open) = (HashSet::from([whole]), vec![whole]);
+    while let Some((expr, relation)) = open.pop() {
+        for (fact, known) in facts {
+            let rest = arena.sub(expr, *fact);
+            if arena.is_zero(rest) {
+                if *known == Relation::Positive || relation == Relation::NonNegative {
+                    return true;
+                }
+                continue;
+            }
+            let shares = || !arena.symbols_of(&[*fact]).is_disjoint(&arena.symbols_of(&[expr]));
+            let needed = if *known == Relation::Positive { Relation::NonNegative } else { relation };
+            if count(rest) <= count(expr) && shares() && met.len() < MOST_SUMS && met.insert((rest, needed)) {
+                open.push((rest, needed));
+            }
+        }
+    }
+    false
+}
+
 /// The square of a fraction, if that is more than a product: `sin(q)` has `1 - cos(q)^2`.
 fn square(field: &Field<'_>, fraction: &Fraction) -> Result<Option<Fraction>, Obstacle> {
     field.has_relations(fraction).then(|| field.mul(fraction, fraction)).transpose()
@@ -232,6 +275,24 @@ mod tests {
     use super::*;
     use crate::Function;
     use crate::domain::manifold::Manifold;
+
+    #[test]
+    fn an_order_is_transitive() {
+        let arena = Arena::new();
+        let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        for (more, less) in [(a, b), (b, c), (c, arena.zero())] {
+            domain.facts.assume(arena.sub(more, less), Relation::Positive);
+        }
+        domain.facts.assume(arena.sub(d, a), Relation::NonNegative);
+        let holds = |expr, relation| domain.implies(&arena, expr, relation);
+        for expr in [a, b, d, arena.sub(a, c), arena.sub(d, c)] {
+            assert!(holds(expr, Relation::Positive) && holds(expr, Relation::NonZero), "{}", arena.print(expr));
+            assert!(!holds(arena.neg(expr), Relation::NonNegative), "{}", arena.print(expr));
+        }
+        assert!(holds(arena.sub(c, a), Relation::NonZero));
+        assert!(!holds(arena.sub(d, a), Relation::Positive) && !holds(arena.sub(a, d), Relation::NonNegative));
+    }
 
     #[test]
     fn divisors_of_a_fact_do_not_vanish() {
