@@ -63,6 +63,10 @@ impl Failure {
     /// The help for the user.
     pub fn help(&self) -> &'static str {
         match self {
+            Self::NotFinite { name, .. } if name.contains(".hat(") => {
+                "a baseline left the domain of the plant's formulas: write under it where it starts, as `initial: {x: 1}`, \
+                 which is 0 if left out, or how far off it may be, as `start: {x: 0.2}`"
+            }
             Self::NotFinite { .. } => {
                 "a formula left its domain: check the start, the control law and the signs, or run it with \
                  `feedback: truth`"

@@ -189,3 +189,20 @@ fn missing_settings_of_a_baseline_are_reported() {
         assert!(hit.is_some_and(|d| d.help.is_some()), "{message}: {found:#?}");
     }
 }
+
+#[test]
+fn a_baseline_that_starts_out_of_its_domain_is_named_with_its_start() {
+    let text = "
+model: log
+x: [a]
+y: [s]
+assume: [a > 0]
+f_x: {a: 0}
+g_y: {s: log(a)}
+phi: [log(a)]
+simulation: {duration: 1, step: 0.01, initial: {a: 2}, baselines: {ekf: {sensors: {s: 0.1}, start: {a: 1}}}}
+";
+    let failure = resolve(text, &Overrides::default()).expect("a scenario").run().expect_err("log(0) has no value");
+    assert!(failure.to_string().contains("`ekf.hat(a)`") && failure.help().contains("`initial: {"), "{failure}");
+    run(&with(text, "start: {a: 1}", "start: {a: 1}, initial: {a: 1}"), &Overrides::default());
+}
