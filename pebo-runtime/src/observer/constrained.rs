@@ -45,7 +45,7 @@ pub(super) fn nearest<S: Real, const NE: usize, const NZ: usize>(
         if is_nearer {
             (parameters, at, misfit, share) = (next, there, left, S::one());
         } else {
-            // Too far: the functions bend.
+            // Too far for functions that are not straight.
             share *= Real::from_f64(0.5);
         }
         if is_found {

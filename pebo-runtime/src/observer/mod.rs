@@ -34,7 +34,8 @@ const AN_INSTANT: f64 = 1e-9;
 ///
 /// A call gets the output at the *end* of an interval and the input that was held *during* it. The first call has no
 /// interval behind it: it sets the clock to 0 with the output `y_0`. Its `dt` has no effect, and its `u` is the input
-/// at that instant, as an output that is given by its value may hold it. `dt` is the time since the last sample that was accepted; it need not be constant.
+/// at that instant, as an output that is given by its value may hold it. Later `dt` is the time since the last sample
+/// that was accepted; it need not be constant.
 ///
 /// For an input that runs straight between samples rather than being held, call [`step_straight`](Self::step_straight).
 ///
