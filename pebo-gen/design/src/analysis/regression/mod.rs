@@ -27,7 +27,7 @@ mod trial;
 
 use std::cell::OnceCell;
 
-use super::design::{Claim, Identifiability, Regression, Verdict};
+use super::design::{Claim, Verdict};
 use super::identifiability::undecided::not_all_used;
 use super::limited::limited;
 use crate::source::Diagnostic;
@@ -35,22 +35,8 @@ use build::Obstruction;
 use pool::{Pool, Rest};
 pub(super) use premises::Premises;
 use selection::{Part, Selection, Source};
+pub(super) use trial::Claims;
 use trial::Trial;
-
-/// The claims on the regression and its unknowns.
-pub(super) struct Claims {
-    pub(super) regression: Claim<Regression>,
-    pub(super) identifiability: Claim<Identifiability>,
-    /// The diagnostics of the identifiability, which a derivation without time to settle it leaves out.
-    pub(super) open: Vec<Diagnostic>,
-}
-
-impl Claims {
-    /// Those without a regression.
-    pub(super) fn without_unknowns(regression: Claim<Regression>) -> Self {
-        Self { regression, identifiability: Claim::skipped(), open: Vec::new() }
-    }
-}
 
 /// What was tried without success.
 #[derive(Default)]

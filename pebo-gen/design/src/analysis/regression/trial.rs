@@ -1,6 +1,5 @@
 //! A regression of selected equations, with its identifiability.
 
-use super::Claims;
 use super::build::{self, Obstruction};
 use super::equation::Equation;
 use super::premises::Premises;
@@ -9,6 +8,21 @@ use crate::analysis::design::{Claim, Excitation, Identifiability, Regression, Ve
 use crate::analysis::limited::limited;
 use crate::analysis::{identifiability, permitted};
 use crate::source::Diagnostic;
+
+/// The claims on the regression and its unknowns.
+pub(in crate::analysis) struct Claims {
+    pub(in crate::analysis) regression: Claim<Regression>,
+    pub(in crate::analysis) identifiability: Claim<Identifiability>,
+    /// The diagnostics of the identifiability, which a derivation without time to settle it leaves out.
+    pub(in crate::analysis) open: Vec<Diagnostic>,
+}
+
+impl Claims {
+    /// Those without a regression.
+    pub(in crate::analysis) fn without_unknowns(regression: Claim<Regression>) -> Self {
+        Self { regression, identifiability: Claim::skipped(), open: Vec::new() }
+    }
+}
 
 /// A proved regression, with the verdict on its identifiability.
 pub(super) struct Trial {
