@@ -1,5 +1,6 @@
 //! The observer: estimates the unmeasured state from samples of outputs and inputs.
 
+mod beginning;
 mod confidence;
 mod constrained;
 mod errors_in_variables;
@@ -18,9 +19,6 @@ pub use confidence::Innovation;
 use errors_in_variables::{Correction, Led, Taken};
 pub use late::{Late, LateObserver};
 use rebasing::Rebasing;
-
-/// The share of a period in which nothing drifts, as there is no interval before the first sample.
-const AN_INSTANT: f64 = 1e-9;
 
 /// A parameter-estimation-based observer.
 ///
@@ -386,71 +384,6 @@ where
     fn unknown(&self, extension: &M::Extension, estimator: &E, terms: &M::Terms) -> SVector<M::Scalar, NE> {
         let nearest = self.nearest(extension, estimator, terms);
         nearest.map_or_else(|| estimator.estimate(), |functions| functions.values)
-    }
-
-    /// Takes the first sample, which has no interval behind it.
-    fn begin(
-        &mut self,
-        terms: M::Terms,
-        y: &SVector<M::Scalar, NY>,
-        u: &SVector<M::Scalar, NU>,
-        dt: M::Scalar,
-    ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let extension = self.model.begin(&self.state.extension, &terms);
-        let theta = self.model.theta(&self.state.estimator.estimate());
-        let z = extension.coordinates(&theta);
-        let start = self.model.recover(&z, &terms);
-        // An observer begins also where its start has a state and the sample leads to none.
-        let learned = self.learned_at_once(&extension, &terms, &Taken::whole(y, [u, u], dt));
-        let learned = learned.and_then(|(estimator, regression)| {
-            let estimate = self.state_of(&extension, &estimator, &terms);
-            all_finite(&estimate).then_some((estimator, regression, estimate))
-        });
-        let (estimate, learned) = match learned {
-            Some((estimator, regression, estimate)) => (estimate, Some((estimator, regression))),
-            None if all_finite(&start) => (start, None),
-            None => return Err(Fault::Estimate),
-        };
-        // An interval begins where the one before ended: from a sample without rates none would lead on.
-        let flow = self.model.flow_near(&terms, u, &z);
-        let sides = self.model.regression(&extension, &terms, u);
-        let rates = blemish(&flow.h) + blemish(&flow.lambda) + blemish(&sides.known) + blemish(&sides.factor);
-        if !extension.is_finite() || !is_none(rates) {
-            return Err(Fault::State);
-        }
-        if let Some((estimator, regression)) = learned {
-            self.state.estimator = estimator;
-            self.state.regression.take(regression);
-        }
-        self.state.extension = extension;
-        self.state.y = Some(*y);
-        self.terms = Some(terms);
-        Ok(estimate)
-    }
-
-    /// Estimator and regression after the rows of the first sample that need no interval; none where there are none, or
-    /// they have no value.
-    fn learned_at_once(
-        &self,
-        extension: &M::Extension,
-        terms: &M::Terms,
-        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
-    ) -> Option<(E, R::Step)> {
-        let (rates, before) = (self.model.rates(), &self.state.regression);
-        if rates >= NR || before.remembers() {
-            return None;
-        }
-        let left_out = core::array::from_fn(|row| row < rates);
-        let mut sides = self.model.regression(extension, terms, sample.u[1]);
-        sides.leave_out(&left_out);
-        // A sample by itself has the same weight after any time, in which the unknown drifts.
-        let sample = Taken { left_out, dt: sample.dt * Real::from_f64(AN_INSTANT), ..*sample };
-        let step = before.step([&sides; 2], sample.dt);
-        let equations = Sides { known: step.regressand(), factor: step.regressor() };
-        let (estimator, corrected) =
-            self.estimated(self.state.estimator.clone(), (extension, before), &equations, &sample).ok()?;
-        let step = corrected.unwrap_or(step);
-        is_none(step.blemish() + estimator.blemish()).then_some((estimator, step))
     }
 
     /// Keeps the state after an interval if all of it and its estimate are finite.

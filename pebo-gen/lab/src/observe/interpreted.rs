@@ -169,14 +169,14 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
     }
 
     /// The number of outputs among the coordinates, in the output form.
-    fn outputs_first(&self) -> usize {
+    fn leading_outputs(&self) -> usize {
         self.output.as_ref().map_or(0, |(rates, _)| *rates)
     }
 
     /// The outputs of a sample, in the output form as an estimate has them.
     fn expected_at(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         let mut y = *y;
-        for (row, (place, _)) in self.expected.iter().flatten().take(self.outputs_first()).enumerate() {
+        for (row, (place, _)) in self.expected.iter().flatten().take(self.leading_outputs()).enumerate() {
             y[*place] = z[row];
         }
         y
@@ -358,7 +358,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
             return *extension;
         }
         let known = self.regression(extension, y, &SVector::zeros()).known;
-        let rates = self.outputs_first();
+        let rates = self.leading_outputs();
         let mut begun = *extension;
         begun.rebase(&SVector::from_fn(|row, _| if row < rates { -known[row] } else { 0.0 }));
         let held = self.primitive(extension, y).factor;
@@ -369,14 +369,14 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
 
     fn parameters(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
         let Some((states, _)) = self.transform else { return *z };
-        let (first, x) = (self.outputs_first(), self.recover(z, y));
+        let (first, x) = (self.leading_outputs(), self.recover(z, y));
         let state = |i: usize| i.checked_sub(first).filter(|i| *i < states).map_or(0.0, |i| x[i]);
         SVector::from_fn(|i, _| if i < first { z[i] } else { state(i) })
     }
 
     fn range(&self, parameters: &SVector<f64, N>, y: &SVector<f64, N>) -> Option<Functions<f64, N, N>> {
         let (states, transform) = self.transform.as_ref()?;
-        let (first, y) = (self.outputs_first(), self.expected_at(parameters, y));
+        let (first, y) = (self.leading_outputs(), self.expected_at(parameters, y));
         let mut transform = transform.borrow_mut();
         let of = |place: usize| if place < *states { parameters[first + place] } else { y[place - states] };
         let mut found = transform.evaluate(of);
@@ -394,7 +394,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     }
 
     fn recover(&self, z: &SVector<f64, N>, y: &SVector<f64, N>) -> SVector<f64, N> {
-        let (first, y) = (self.outputs_first(), self.expected_at(z, y));
+        let (first, y) = (self.leading_outputs(), self.expected_at(z, y));
         let of = |place: usize| if place < self.nz { z[first + place] } else { y[place - self.nz] };
         column(&mut self.phi_left.borrow_mut().evaluate(of), N)
     }

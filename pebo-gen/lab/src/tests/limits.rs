@@ -193,7 +193,11 @@ fn advice_follows_from_innovation_and_expected_error() {
     let (said, summary) = advice(numbers, ", noise: {q: 0.1}");
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("the observer expects") && said[0].contains("a better sensor"), "{said:?}");
+    assert!(said[0].contains("choose a lower `disturbance`"), "{said:?}");
     assert!(summary.contradiction.is_none() && summary.estimates[0].expected.is_some());
+    // One that is assumed is as low as samples show already.
+    let (said, _) = advice("sensors: {q: 1}, start: {v: 1}", ", noise: {q: 1}");
+    assert!(said[0].contains("simulate longer") && !said[0].contains("lower `disturbance`"), "{said:?}");
     // A hundred times as noisy: the numbers are wrong, and nothing is expected.
     let (said, summary) = advice(&numbers.replace("q: 0.1", "q: 0.001"), ", noise: {q: 0.1}");
     assert!(said[0].starts_with("numbers-contradicted:") && said[0].contains("raise `sensors`"), "{said:?}");

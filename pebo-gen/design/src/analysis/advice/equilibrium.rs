@@ -113,10 +113,10 @@ fn found(plant: &Plant, domain: &Domain, cascade: &Cascade) -> Result<Equilibriu
     families.sort_by_key(|family| family.domain.manifold.reduced(arena).len());
     let is_all = |values: &BTreeMap<Symbol, Expr>| {
         let [family] = families.as_slice() else { return false };
-        // Where the family gives the same symbols, its values take their places.
-        let given = family.domain.manifold.values().unwrap_or_default();
-        let there = family.domain.restricted(arena, &given);
-        let there = there.as_ref().unwrap_or(&family.domain);
+        // Where the family gives all its symbols, their values take their places, and no equation is left.
+        let given = family.domain.manifold.values();
+        let there = given.as_ref().and_then(|given| family.domain.restricted(arena, given));
+        let (given, there) = (given.unwrap_or_default(), there.as_ref().unwrap_or(&family.domain));
         values.iter().all(|(symbol, value)| {
             let apart = arena.sub(arena.of_symbol(*symbol), *value);
             is_zero(arena, arena.substitute(apart, &given), there)

@@ -206,11 +206,13 @@ fn innovations_of_which_some_are_far_too_large_are_not_as_expected() {
     let mut replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
     let mut notes = |surprise: f64| {
         (replayed.summary.contradiction, replayed.summary.surprise) = (None, Some(surprise));
-        replay.advise(&replayed).pop().expect("the speed is off").notes.concat()
+        let said = replay.advise(&replayed).pop().expect("the speed is off");
+        format!("{} {}", said.notes.concat(), said.help.expect("a help"))
     };
     assert!(notes(1.2).contains("the innovations are as expected"), "{}", notes(1.2));
     let (some, all) = (notes(14.0), "the innovations are as expected");
     assert!(some.contains("but some so large that their normalised square is 14.0") && !some.contains(all), "{some}");
+    assert!(some.contains("`gate: 25`") && !notes(1.2).contains("gate"), "{some}");
 }
 
 #[test]
