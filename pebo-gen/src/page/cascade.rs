@@ -9,6 +9,7 @@ use super::formula::{Setter, Steps, sum};
 use super::html::Html;
 use super::subject::Subject;
 use super::verdict;
+use crate::report::notes;
 
 /// The longest table of terms that a reader follows.
 const MOST_TERMS: usize = 64;
@@ -41,6 +42,7 @@ pub(super) fn section(html: &mut Html, setter: &Setter<'_>, subject: &Subject<'_
         }
         if derivation.cascade.verdict == Verdict::Proved {
             result(html, setter, subject);
+            html.list(&notes::cascade(plant, derivation).into_iter().collect::<Vec<_>>());
         }
     });
 }

@@ -8,8 +8,8 @@ use super::remarks::ONE_OF_THEM;
 use super::{conditions, expansion, printed};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::{
-    BlindTrajectory, Cascade, Claim, Derivation, Equilibrium, Excitation, Fundamental, Identifiability, Outcome,
-    Regression, UnusedOutput, Witness,
+    BlindTrajectory, Cascade, Claim, Derivation, Determined, Equilibrium, Excitation, Fundamental, Identifiability,
+    Outcome, Regression, UnusedOutput, Witness,
 };
 use pebo_design::plant::{Noisier, Plant, TransformOrigin};
 use pebo_design::source::{Diagnostic, LocatedDiagnostic, Source};
@@ -99,6 +99,9 @@ struct CascadeReport {
     bounded: Option<&'static str>,
     /// Beside a generalised cascade, a transform with a plain one.
     mend: Option<Vec<String>>,
+    /// Beside a generalised cascade, the right side of the plain one of the same transform, to which it is preferred.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plain: Option<Vec<String>>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -167,6 +170,9 @@ struct BlindReport {
     /// What is identified of functions of theta determines theta near almost every value.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     determines_theta: bool,
+    /// The unmeasured states that what is identified of phi's components determines near almost every value.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    determines: Vec<String>,
 }
 
 /// `Phi_1' Phi_1` and its determinant; `positive` if that is proved on the whole assumed domain.
@@ -328,6 +334,7 @@ fn cascade(arena: &Arena, claim: &Claim<Cascade>) -> CascadeReport {
         witness: result.and_then(|r| r.witness.as_ref()).map(|w| witness(arena, w)),
         bounded: result.and_then(|r| r.fundamental).map(Fundamental::word),
         mend: result.and_then(|r| r.mend.as_ref()).map(|mend| printed(arena, mend)),
+        plain: result.and_then(|r| r.plain.as_ref()).map(|plain| printed(arena, plain)),
     }
 }
 
@@ -375,7 +382,11 @@ fn blind(plant: &Plant, blind: &BlindTrajectory) -> BlindReport {
         seen: printed(&plant.arena, &seen),
         functions: of_states.len(),
         hidden: matrix(&plant.arena, &blind.hidden),
-        determines_theta: blind.determines_theta,
+        determines_theta: blind.determined == Determined::Theta,
+        determines: match &blind.determined {
+            Determined::States(states) => states.iter().map(|state| plant.arena.name(*state)).collect(),
+            Determined::Nothing | Determined::Theta => Vec::new(),
+        },
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use pebo_cas::Symbol;
+use pebo_cas::{Arena, Symbol};
 use pebo_design::analysis::{
     Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
 };
@@ -37,18 +37,14 @@ pub(crate) fn transform(plant: &Plant) -> Vec<String> {
             "{added} of the components as they are written: in these alone the outputs are not affine, in all they are"
         )];
     }
-    let names = |symbols: BTreeSet<Symbol>| {
-        let names: Vec<String> = symbols.into_iter().map(|symbol| arena.name(symbol)).collect();
-        listed(names.iter().map(String::as_str))
-    };
     let note = |noisier: &Noisier| {
         let phi: Vec<String> = noisier.phi.iter().map(|component| arena.print(*component)).collect();
-        let (states, outputs): (BTreeSet<Symbol>, _) = noisier.unfiltered.iter().copied().unzip();
+        let (states, outputs): (BTreeSet<Symbol>, BTreeSet<Symbol>) = noisier.unfiltered.iter().copied().unzip();
         let conditions = super::conditions(arena, &noisier.conditions);
         let needed =
             (!conditions.is_empty()).then(|| format!("which needs {}", listed(conditions.iter().map(String::as_str))));
         let noisy = (!states.is_empty()).then(|| {
-            let (states, outputs) = (names(states), names(outputs));
+            let (states, outputs) = (names(arena, states), names(arena, outputs));
             format!("in which each sample of {outputs} enters {states} with all of its noise")
         });
         let reasons: Vec<String> = noisy.into_iter().chain(needed).collect();
@@ -56,6 +52,28 @@ pub(crate) fn transform(plant: &Plant) -> Vec<String> {
         format!("preferred to `phi: [{phi}]`, {reasons}; write that `phi` to have it")
     };
     plant.noisier.iter().map(note).collect()
+}
+
+fn names(arena: &Arena, symbols: impl IntoIterator<Item = Symbol>) -> String {
+    let names: Vec<String> = symbols.into_iter().map(|symbol| arena.name(symbol)).collect();
+    listed(names.iter().map(String::as_str))
+}
+
+/// The plain cascade to which a generalised one is preferred.
+pub(crate) fn cascade(plant: &Plant, derivation: &Derivation) -> Option<String> {
+    let cascade = derivation.cascade.result.as_ref()?;
+    let arena = &plant.arena;
+    let plain = cascade.plain.iter().flatten().zip(&plant.z);
+    let moving = plain.filter(|(rate, _)| !arena.is_zero(**rate));
+    let rates: Vec<String> = moving.map(|(rate, z)| format!("{}' = {}", arena.name(*z), arena.print(*rate))).collect();
+    let outputs = names(arena, cascade.unfiltered(plant));
+    (!rates.is_empty()).then(|| {
+        format!(
+            "preferred to the plain cascade {}, which each sample of {outputs} enters with all of its noise; write \
+             `class: pebo` to have it",
+            listed(rates.iter().map(String::as_str))
+        )
+    })
 }
 
 /// Notes on the left inverse: the states that it does not recover, and its domain conditions on estimates.

@@ -113,6 +113,7 @@ fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     if derivation.class == Class::Gpebo {
         lines.insert(0, "generalised: z' = Lambda z + h, with z = xi + Psi theta".to_owned());
     }
+    lines.extend(notes::cascade(plant, derivation));
     lines
 }
 

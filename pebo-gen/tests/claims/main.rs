@@ -71,3 +71,19 @@ fn outputs_complete_a_transform_that_alone_is_not_solved() {
         assert_eq!(derived.plant.arena.print(inverse.x[0].1), expected, "{value}");
     }
 }
+
+/// Both are the same transform: samples of values would drive the plain one.
+#[test]
+fn a_plain_cascade_that_is_passed_over_is_named_with_the_way_to_it() {
+    let plant = "x: [a]\ny: [s]\nu: [v]\nf_x: {a: v - a}\ng_y: {s: 2*a}\nphi: [a]";
+    let said = |lines: &str| {
+        let derived = derived(lines);
+        summary(&derived.plant, &derived.derivation)
+    };
+    let preferred = said(plant);
+    let note = "preferred to the plain cascade `z1' = (2*v - s)/2`, which each sample of `s` enters with all of its noise; \
+                write `class: pebo` to have it";
+    assert!(preferred.contains(note), "{preferred}");
+    let plain = said(&format!("{plant}\nclass: pebo"));
+    assert!(plain.contains("z1' = (2*v - s)/2") && !plain.contains("preferred"), "{plain}");
+}

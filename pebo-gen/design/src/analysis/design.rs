@@ -57,6 +57,21 @@ pub struct Cascade {
     pub fundamental: Option<Fundamental>,
     /// Beside a generalised cascade, a transform with a plain one: phi with multiples of the outputs added.
     pub mend: Option<Vec<Expr>>,
+    /// Beside a generalised cascade, the right side of the plain one of the same transform. It is not taken, as samples of
+    /// outputs that are given by value drive it.
+    pub plain: Option<Vec<Expr>>,
+}
+
+impl Cascade {
+    /// The outputs given by value whose samples drive the plain cascade that is not taken, and not this one.
+    pub fn unfiltered(&self, plant: &Plant) -> Vec<Symbol> {
+        let arena = &plant.arena;
+        let driven = arena.symbols_of(&self.plain.iter().flatten().copied().collect::<Vec<_>>());
+        let taken = self.lambda.iter().flatten().flatten().chain(&self.h);
+        let taken = arena.symbols_of(&taken.copied().collect::<Vec<_>>());
+        let values = plant.y.iter().filter(|output| output.value.is_some()).map(|output| output.symbol);
+        values.filter(|symbol| driven.contains(symbol) && !taken.contains(symbol)).collect()
+    }
 }
 
 /// The behaviour of `Psi' = Lambda(y, u) Psi`, `Psi(0) = I`, along every trajectory.
@@ -335,15 +350,26 @@ pub struct BlindTrajectory {
     pub identifiable: Vec<Expr>,
     /// Unobservable directions: none where it is undecided.
     pub hidden: Vec<Vec<Expr>>,
-    /// True if the unknowns are functions of theta, and what is identified of them determines theta near almost every
-    /// value.
-    pub determines_theta: bool,
+    /// What these combinations determine although they are fewer than the unknowns.
+    pub determined: Determined,
+}
+
+/// What combinations of unknowns that depend on one another determine near almost every value.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Determined {
+    /// They are not known to determine anything else.
+    #[default]
+    Nothing,
+    /// Theta: the unknowns are functions of it.
+    Theta,
+    /// These states: the unknowns are more components of phi than there are states.
+    States(Vec<Symbol>),
 }
 
 impl BlindTrajectory {
     /// Trajectories on which the rank is undecided.
     pub(in crate::analysis) fn undecided(condition: TrajectoryCondition) -> Self {
-        Self { condition, identifiable: Vec::new(), hidden: Vec::new(), determines_theta: false }
+        Self { condition, identifiable: Vec::new(), hidden: Vec::new(), determined: Determined::Nothing }
     }
 }
 

@@ -47,9 +47,9 @@ pub use advice::drift::Drift;
 pub use advice::equilibrium::{Equilibrium, OperatingPoint};
 pub use advice::remarks::Remarks;
 pub use design::{
-    BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Excitation, Fundamental, Gram, Identifiability,
-    LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still, Trajectories, TrajectoryCondition,
-    UnusedOutput, UnusedReason, Verdict, Witness,
+    BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Determined, Excitation, Fundamental, Gram,
+    Identifiability, LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still, Trajectories,
+    TrajectoryCondition, UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;
 pub use output_slopes::{OutputSlopes, are_affine_in_outputs};

@@ -53,7 +53,7 @@ pub(super) fn prove(plant: &Plant, domain: &Domain, found: &mut Vec<Diagnostic>)
     if plant.cascade_class != Some(Class::Gpebo) && components.iter().all(|c| matches!(c, Component::Free(_))) {
         let h: Vec<Expr> = components.iter().filter_map(Component::free).collect();
         if let Some(rows) = with_fewer_values(plant, domain, &lie, &h).filter(|_| plant.cascade_class.is_none()) {
-            let result = gpebo::cascade(plant, domain, rows);
+            let result = Cascade { plain: Some(h), ..gpebo::cascade(plant, domain, rows) };
             return (Class::Gpebo, Claim { verdict: Verdict::Proved, result: Some(result) });
         }
         return (Class::Pebo, Claim { verdict: Verdict::Proved, result: Some(Cascade { h, ..Cascade::default() }) });

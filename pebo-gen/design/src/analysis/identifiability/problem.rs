@@ -5,7 +5,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::analysis::design::{BlindTrajectory, Cascade, LeftInverse, Regression, Still, TrajectoryCondition};
+use crate::analysis::design::{
+    BlindTrajectory, Cascade, Determined, LeftInverse, Regression, Still, TrajectoryCondition,
+};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::linear::rank::{full_rank, null_vectors, proved_rank};
@@ -142,19 +144,38 @@ impl<'a> ObservabilityProblem<'a> {
         let hidden = self.plant.hidden();
         let is_any = condition.still != Still::Plant
             && !condition.zeros.iter().any(|zero| self.plant.arena.depends_on(*zero, &hidden));
-        let is_of_theta = is_any && !self.regression.is_linear(self.plant);
-        let determines_theta = is_of_theta && self.determines_theta(&observed.stack);
-        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone(), determines_theta }
+        let determined = if is_any { self.determined(&observed.stack) } else { Determined::Nothing };
+        BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone(), determined }
+    }
+
+    /// What rows of the unknowns determine near almost every value, as the unknowns depend on one another.
+    fn determined(&self, stack: &[Vec<Expr>]) -> Determined {
+        if !self.regression.is_linear(self.plant) {
+            return if self.determines_theta(stack) { Determined::Theta } else { Determined::Nothing };
+        }
+        let states: Vec<Symbol> =
+            self.left_inverse.into_iter().flat_map(|inverse| &inverse.x).map(|(x, _)| *x).collect();
+        let phi = self.plant.transform();
+        let is_recovered = |symbol: &Symbol| states.contains(symbol) || !self.plant.hidden().contains(symbol);
+        if phi.len() <= states.len() || !self.plant.arena.symbols_of(&phi).iter().all(is_recovered) {
+            return Determined::Nothing;
+        }
+        let rows = self.rows_by(stack, &phi, &states);
+        let is_full = full_rank(&self.plant.arena, self.domain, &rows, states.len());
+        if is_full { Determined::States(states) } else { Determined::Nothing }
     }
 
     /// Rows of theta near a value of it, by those of the unknowns that are functions of it.
     pub(super) fn rows_of_theta(&self, stack: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
-        let (arena, theta) = (&self.plant.arena, &self.plant.theta);
-        let slope = |row: &[Expr], theta: Symbol| {
-            let slopes: Vec<Expr> = self.regression.eta.iter().map(|eta| arena.derivative(*eta, theta)).collect();
-            arena.dot(row, &slopes)
-        };
-        stack.iter().map(|row| theta.iter().map(|theta| slope(row, *theta)).collect()).collect()
+        self.rows_by(stack, &self.regression.eta, &self.plant.theta)
+    }
+
+    /// Rows of functions of some symbols as rows of these.
+    fn rows_by(&self, stack: &[Vec<Expr>], functions: &[Expr], symbols: &[Symbol]) -> Vec<Vec<Expr>> {
+        let arena = &self.plant.arena;
+        let slopes = |symbol: &Symbol| functions.iter().map(|of| arena.derivative(*of, *symbol)).collect();
+        let slopes: Vec<Vec<Expr>> = symbols.iter().map(slopes).collect();
+        stack.iter().map(|row| slopes.iter().map(|slopes| arena.dot(row, slopes)).collect()).collect()
     }
 
     /// Tests whether rows of functions of theta determine it near almost every value.

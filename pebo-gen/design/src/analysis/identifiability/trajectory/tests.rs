@@ -69,7 +69,7 @@ fn a_plant_that_moves_may_need_no_input() {
     let turned = "x: [q]\ny: [s]\nu: [v]\nf_x: {q: v}\ng_y: {s: sin(q)}\nphi: [sin(q), cos(q)]\nangles: {q: 2*pi}";
     let lines = of(turned);
     assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
-    assert_eq!(lines[1], "while `v = 0`, only `z1` is identified");
+    assert_eq!(lines[1], "while `v = 0`, only `z1` is identified, which determines `q` near almost every value");
     let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
     assert_eq!(
         of(frame),
@@ -367,4 +367,18 @@ fn what_is_identified_of_functions_of_theta_may_determine_theta() {
     let still = "x: [a, b]\ny: [q, v]\nu: [f]\nf_x: {a: f, b: 0}\nf_y: {q: a, v: a*b + a*q*b^2}\nphi: [a, b]";
     let lines = of(still);
     assert!(!lines.iter().any(|line| line.contains("rests") && line.contains("determines")), "{lines:?}");
+}
+
+#[test]
+fn what_is_identified_of_related_components_may_determine_the_states() {
+    // Distance from the origin under a known speed, and an unknown one: seven functions of four states.
+    let range = "x: [px, py, cx, cy]\ny: [r]\nu: [wx, wy]\nassume: [r > 0]\n\
+                 f_x: {px: wx + cx, py: wy + cy, cx: 0, cy: 0}\ng_y: {r: sqrt(px^2 + py^2)}\n\
+                 phi: [px, py, cx, cy, px^2 + py^2, px*cx + py*cy, cx^2 + cy^2]";
+    let lines = of(range);
+    let line = |start: &str| lines.iter().find(|line| line.starts_with(start)).expect("a line");
+    let determined = "are identified, which determine `px`, `py`, `cx`, `cy` near almost every value";
+    assert!(line("while `wx` is constant, only").ends_with(determined), "{lines:?}");
+    // All seen from a point that the origin moves with is turned about it unseen.
+    assert!(line("while all inputs are constant, only").ends_with("are identified"), "{lines:?}");
 }

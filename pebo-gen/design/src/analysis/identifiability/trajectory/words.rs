@@ -1,6 +1,6 @@
 //! Sentences on the necessary motion and on the trajectories that hide unknowns.
 
-use crate::analysis::design::{BlindTrajectory, Still, Trajectories, TrajectoryCondition};
+use crate::analysis::design::{BlindTrajectory, Determined, Still, Trajectories, TrajectoryCondition};
 use crate::analysis::identifiability::flow::varies;
 use crate::plant::Plant;
 use crate::source::{counted, listed};
@@ -111,12 +111,17 @@ impl BlindTrajectory {
         let identifiable =
             if identifiable.is_empty() { "nothing".to_owned() } else { format!("only {}", identifiable.join(", ")) };
         let are_several = self.identifiable.len() > 1;
-        let rest = match (self.determines_theta, are_several) {
-            (false, _) => "",
-            (true, false) => ", which determines theta near almost every value",
-            (true, true) => ", which determine theta near almost every value",
+        let (verb, determines) = if are_several { ("are", "determine") } else { ("is", "determines") };
+        let determined = match &self.determined {
+            Determined::Nothing => None,
+            Determined::Theta => Some("theta".to_owned()),
+            Determined::States(states) => {
+                let names: Vec<String> = states.iter().map(|state| plant.arena.name(*state)).collect();
+                Some(listed(names.iter().map(String::as_str)))
+            }
         };
-        let verb = if are_several { "are" } else { "is" };
+        let rest = determined.map(|known| format!(", which {determines} {known} near almost every value"));
+        let rest = rest.unwrap_or_default();
         format!("while {condition}, {identifiable} {verb} identified{rest}")
     }
 }
