@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 
 use pebo_cas::{Arena, Expr, Symbol};
-use pebo_design::analysis::{Derivation, LeftInverse, OutputSlopes, RegressionKind, RelatedTransform};
+use pebo_design::analysis::{Derivation, LeftInverse, OutputSlopes, Regression, RegressionKind, RelatedTransform};
+use pebo_design::plant::Plant;
 use pebo_design::program::{Interpreter, Program, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::certainty::Wanted;
 use super::request::Request;
-use super::setup::Settings;
+use super::setup::{Operator, Settings};
 use super::sizes::LARGEST;
 use crate::score::SETTLED;
 use crate::score::faults::SignalNames;
-use crate::settings::{Prediction, Shown};
+use crate::settings::{Prediction, SampleRows, Shown};
 
 /// An observer, ready to be interpreted.
 #[derive(Debug)]
@@ -24,6 +25,8 @@ pub(crate) struct Design {
     pub(crate) is_static: bool,
     /// Positions in y of the outputs whose rates the dynamic regression uses.
     pub(crate) rows: Vec<usize>,
+    /// The index in y of the output of each row, where the sample of any output may be missing.
+    pub(crate) partial: Option<Vec<usize>>,
     /// The number of outputs y.
     pub(crate) outputs: usize,
     /// The number of inputs u.
@@ -149,6 +152,7 @@ impl Design {
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
             is_static: regression.kind == RegressionKind::Static,
             rows: regression.rows(),
+            partial: partial(plant, regression, &settings),
             outputs: plant.y.len(),
             inputs: plant.u.len(),
             names: SignalNames {
@@ -214,6 +218,19 @@ impl Design {
 }
 
 /// The wanted standard errors of the recovered states; one of another state is reported.
+/// The index in y of the output of each row, where the observer expects any of them by its row, or waits for it.
+fn partial(plant: &Plant, regression: &Regression, settings: &Settings) -> Option<Vec<usize>> {
+    if !matches!(settings.operator, Operator::Sampled(_)) {
+        return None;
+    }
+    let SampleRows { rows, is_expected } = SampleRows::of(plant, regression, settings.output);
+    let may_lack = match &settings.late {
+        Some(late) => late.may_lack_any(),
+        None => rows.iter().all(|output| is_expected[*output]),
+    };
+    may_lack.then_some(rows)
+}
+
 fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
     let arena = &request.plant.arena;
     let mut found = Vec::new();

@@ -212,15 +212,16 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             Some(sensors) => observer.with_errors_in_variables(&pad(sensors))?,
             None => observer,
         };
-        let mut rows = [usize::MAX; N];
-        rows.iter_mut().zip(&design.rows).for_each(|(row, output)| *row = *output);
-        let whole = settings.output && design.primitive.is_none();
+        let rows = design.partial.as_ref().map(|outputs| {
+            let mut rows = [usize::MAX; N];
+            rows.iter_mut().zip(outputs).for_each(|(row, output)| *row = *output);
+            rows
+        });
         let observer = match settings.rebase {
             Some(Rebase::Samples(every)) => observer.rebasing(every)?,
             Some(Rebase::Drift(form)) => observer.without_drift(form)?,
             None => observer,
         };
-        let may_lack = settings.late.as_ref().map_or(whole, pebo_design::plant::settings::Late::may_lack_any);
         Ok(Self {
             observer: Running::new(observer, design)?,
             gate: settings.gate.map(|limit| Gate::new(limit, PATIENCE)).transpose()?,
@@ -228,10 +229,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             chi_0: pad(&settings.chi_0),
             restarts: 0,
             waited: 0.0,
-            rows: may_lack.then_some(rows),
+            rows,
             sizes: (design.recovered.len(), design.equations),
             is_certain: design.predicts(),
-            uncertainty: noise_model(design, whole).map(|noise| Uncertainty::new(&noise)),
+            uncertainty: noise_model(design).map(|noise| Uncertainty::new(&noise)),
             weights: match &settings.operator {
                 Operator::Sampled(deviations) => deviations.clone(),
                 Operator::Filter(_) | Operator::Window(_) => Vec::new(),
@@ -293,7 +294,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
 }
 
 /// The noise model of a design, where the noise of a sample is not only in its row.
-fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
+fn noise_model(design: &Design) -> Option<NoiseModel> {
     let settings = &design.settings;
     let (Some(Prediction::Noise(noise)), Operator::Sampled(weights)) = (&settings.prediction, &settings.operator)
     else {
@@ -310,7 +311,7 @@ fn noise_model(design: &Design, whole: bool) -> Option<NoiseModel> {
         start: start.clone(),
         drift: noise.drift.clone(),
         rows: if settings.output { design.rates() } else { 0 },
-        measured: if whole { design.rows.clone() } else { Vec::new() },
+        measured: design.partial.clone().unwrap_or_default(),
     })
 }
 

@@ -171,7 +171,9 @@ impl<const N: usize> Uncertainty<N> {
         for (row, output) in self.measured.iter().enumerate().filter(|(_, output)| missing[**output]) {
             // The substitute for a missing output has the error of its expectation.
             present[(*output, *output)] = 0.0;
-            expected[(*output, row)] = 1.0;
+            if !self.measured[..row].contains(output) {
+                expected.set_row(*output, &rows.row(row));
+            }
             weights[row] = 0.0;
         }
         let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);

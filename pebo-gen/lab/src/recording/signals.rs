@@ -15,7 +15,7 @@ use pebo_design::plant::{Scope, lower};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
-use super::log::Log;
+use super::log::{Log, Unreadable};
 
 /// The signals of a row.
 #[derive(Debug)]
@@ -65,28 +65,24 @@ impl Signals {
     }
 }
 
-/// The rows of which is asked what they show: enough for a median, and no long wait where they come one by one.
-const HEAD: usize = 256;
+/// The rows of which is asked what they show: enough for a median, and no long wait where they come one by one. More are
+/// asked where an output came seldom.
+const HEAD: [usize; 3] = [256, 1024, 4096];
+
+/// The samples of each output that are waited for: of fewer little can be said.
+const ENOUGH: usize = 32;
 
 impl Signals {
     /// What the first rows show of the plant; nothing where they cannot be read, which the run will report. Rows that do
     /// not show where an observer begins whose gains follow from that are reported.
     pub(super) fn shown(&self, request: &Request, log: &mut Log, problems: &mut Diagnostics) -> Option<Shown> {
         let plant = request.plant;
-        let (rows, unreadable) = log.head(&self.wanted, HEAD).unwrap_or_default();
-        let mut interpreter = Interpreter::new(&self.program);
-        let mut values = vec![0.0; self.program.outputs.len()];
         let signals = self.measured.iter().map(|state| plant.x[*state].symbol);
         let outputs: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let signals: Vec<Symbol> = signals.chain(outputs.iter().copied()).chain(plant.commanded()).collect();
-        let timed = usize::from(self.period.is_none());
-        let (mut times, mut samples): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), vec![Vec::new(); signals.len()]);
-        for row in &rows {
-            interpreter.run(row, &mut values);
-            times.extend(values[..timed].first());
-            samples.iter_mut().zip(&values[timed..]).for_each(|(samples, value)| samples.push(*value));
-        }
-        let samples: Vec<(Symbol, Vec<f64>)> = signals.into_iter().zip(samples).collect();
+        let Head { times, samples, unreadable } = self.head(log, outputs.len());
+        let (count, samples) = (samples[0].len(), signals.into_iter().zip(samples));
+        let samples: Vec<(Symbol, Vec<f64>)> = samples.collect();
         // A state that is measured besides may be missing.
         let mut needed = samples.iter().skip(self.measured.len());
         let unknown = needed.find(|(_, values)| !values.iter().any(|value| value.is_finite()));
@@ -97,7 +93,7 @@ impl Signals {
         }
         if let Some((signal, _)) = needed {
             let (name, signal) = (log.name(), plant.arena.name(*signal));
-            let message = match rows.len() {
+            let message = match count {
                 0 => format!("{name} has no rows"),
                 count => format!("none of the first {count} rows of {name} has a value of `{signal}`"),
             };
@@ -109,6 +105,43 @@ impl Signals {
         let period = self.period.map(|(above, below)| above / below);
         Some(Shown::by_samples((&times, period), &samples, &outputs))
     }
+
+    /// The first rows: as many as each output needs, if there are as many.
+    fn head(&self, log: &mut Log, outputs: usize) -> Head {
+        let mut head = Head::default();
+        for most in HEAD {
+            head = self.first_rows(log, most);
+            let of_outputs = head.samples.iter().skip(self.measured.len()).take(outputs);
+            let mut counts = of_outputs.map(|values| values.iter().filter(|value| value.is_finite()).count());
+            if head.samples[0].len() < most || counts.all(|count| count >= ENOUGH) {
+                break;
+            }
+        }
+        head
+    }
+
+    fn first_rows(&self, log: &mut Log, most: usize) -> Head {
+        let (rows, unreadable) = log.head(&self.wanted, most).unwrap_or_default();
+        let mut interpreter = Interpreter::new(&self.program);
+        let mut values = vec![0.0; self.program.outputs.len()];
+        let timed = usize::from(self.period.is_none());
+        let mut head = Head { samples: vec![Vec::new(); values.len() - timed], unreadable, ..Head::default() };
+        for row in &rows {
+            interpreter.run(row, &mut values);
+            head.times.extend(values[..timed].first());
+            head.samples.iter_mut().zip(&values[timed..]).for_each(|(samples, value)| samples.push(*value));
+        }
+        head
+    }
+}
+
+/// The first rows of a recording: their instants where the period is not known, the samples of each signal, and why a
+/// row after them cannot be read.
+#[derive(Default)]
+struct Head {
+    times: Vec<f64>,
+    samples: Vec<Vec<f64>>,
+    unreadable: Option<Unreadable>,
 }
 
 /// The columns as names of formulas.

@@ -1,18 +1,19 @@
 //! Finds what stands in for outputs that arrive late.
 //!
 //! In: the delays of the section `observer` and the equations of the regression. Out: the rows that wait for each output,
-//! and the outputs that the observer expects until their samples arrive. An output is expected by an equation
-//! `y_i = (..)` that is free of `y_i` on the right. One that nothing but its own equations needs is waited for alone.
+//! and the outputs that the observer expects until their samples arrive. One that nothing but its own equations needs is
+//! waited for alone.
 
 use std::collections::BTreeSet;
 
-use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Derivation, Regression, RegressionKind};
+use pebo_cas::{Rational, Symbol};
+use pebo_design::analysis::{Derivation, Regression};
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::Late;
 use pebo_design::source::{Code, Diagnostic, Diagnostics};
 
+use super::equations::{Equations, SampleRows};
 use super::kind::ObserverKind;
 
 /// The most samples on their way: each is some hundred bytes in a run. Of more the newest are joined.
@@ -43,19 +44,7 @@ pub(super) fn late(
         return Ok(None);
     }
     let equations = Equations::of(plant, regression, kind);
-    let rows = equations.samples.iter().zip(&equations.sources).map(|(equation, sources)| {
-        // Without the latest of its outputs an equation says nothing yet.
-        let own = (0..plant.y.len()).filter(|output| equation.has(plant, plant.y[*output].symbol));
-        let latest = own.reduce(|late, output| if delays[output] > delays[late] { output } else { late });
-        latest.or(sources.first().copied()).unwrap_or(0)
-    });
-    let rows: Vec<usize> = rows.collect();
-    // By the same row as in a run: the first that waits for the output.
-    let expects = |output: usize| {
-        let row = rows.iter().position(|row| *row == output);
-        row.is_some_and(|row| equations.samples[row].expects(plant, plant.y[output].symbol))
-    };
-    let is_expected: Vec<bool> = (0..plant.y.len()).map(expects).collect();
+    let SampleRows { rows, is_expected } = equations.rows(plant, &delays);
     for (output, measured) in plant.y.iter().enumerate().filter(|(output, _)| !delays[*output].is_zero()) {
         let name = arena.name(measured.symbol);
         let lacking = if kind == ObserverKind::Filtered {
@@ -77,66 +66,6 @@ pub(super) fn late(
     let wanted = period.map_or(f64::from(ASSUMED_INSTANTS), |period| (longest / period).ceil() + 2.0);
     let instants = (3..MOST_INSTANTS).find(|count| f64::from(*count) >= wanted).unwrap_or(MOST_INSTANTS);
     Ok(Some(Late { delays, rows, is_expected, instants: instants.into() }))
-}
-
-/// The equations of an observer.
-struct Equations {
-    /// Those of samples: what is known in each, and the factors of the unknowns.
-    samples: Vec<Equation>,
-    /// The outputs that each is made of.
-    sources: Vec<Vec<usize>>,
-    /// The rates of outputs that are states of the observer.
-    rates: Vec<Expr>,
-}
-
-struct Equation {
-    known: Expr,
-    factors: Vec<Expr>,
-}
-
-impl Equation {
-    /// True if it depends on an output.
-    fn has(&self, plant: &Plant, output: Symbol) -> bool {
-        let own = BTreeSet::from([output]);
-        plant.arena.depends_on(self.known, &own) || self.has_in_factor(plant, output)
-    }
-
-    fn has_in_factor(&self, plant: &Plant, output: Symbol) -> bool {
-        let own = BTreeSet::from([output]);
-        self.factors.iter().any(|factor| plant.arena.depends_on(*factor, &own))
-    }
-
-    /// True if it is `output = ..`, so that it says what the output is.
-    fn expects(&self, plant: &Plant, output: Symbol) -> bool {
-        let slope = plant.arena.as_number(plant.arena.derivative(self.known, output));
-        slope == Some(Rational::ONE) && !self.has_in_factor(plant, output)
-    }
-}
-
-impl Equations {
-    fn of(plant: &Plant, regression: &Regression, kind: ObserverKind) -> Self {
-        let arena = &plant.arena;
-        let rates = match kind {
-            ObserverKind::Output => regression.phi_0.len() - regression.instants(arena),
-            ObserverKind::Sampled | ObserverKind::Filtered => 0,
-        };
-        let row = |row: usize| match regression.kind {
-            RegressionKind::Dynamic if row < rates => {
-                let output = plant.y[regression.rows()[row]].symbol;
-                Equation { known: arena.of_symbol(output), factors: Vec::new() }
-            }
-            _ if row < rates => {
-                Equation { known: regression.primitive_0[row], factors: regression.primitive_1[row].clone() }
-            }
-            _ => Equation { known: regression.phi_0[row], factors: regression.phi_1[row].clone() },
-        };
-        let of_rates = regression.phi_0.iter().zip(&regression.phi_1).take(rates);
-        Self {
-            samples: (0..regression.phi_0.len()).map(row).collect(),
-            sources: regression.sources.clone(),
-            rates: of_rates.flat_map(|(known, factors)| std::iter::once(known).chain(factors)).copied().collect(),
-        }
-    }
 }
 
 /// True if the observer computes with an output besides its own equations.

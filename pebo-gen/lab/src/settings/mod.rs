@@ -19,6 +19,7 @@ mod words;
 
 mod derive;
 mod digits;
+mod equations;
 mod kind;
 mod late;
 mod magnitude;
@@ -45,6 +46,8 @@ pub(crate) use start::start;
 
 #[cfg(feature = "simulate")]
 pub(crate) use derive::BANDWIDTH;
+#[cfg(feature = "simulate")]
+pub(crate) use equations::SampleRows;
 #[cfg(feature = "simulate")]
 pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]

@@ -74,10 +74,9 @@ impl Shown {
 #[cfg(feature = "simulate")]
 const EVERY: usize = 8;
 
-/// Differences of a noise of standard deviation 1, of orders two to four, have these standard deviations: the roots of the
-/// sums of their squared coefficients.
+/// The orders of the differences that are looked at.
 #[cfg(feature = "simulate")]
-const ORDERS: [f64; 3] = [2.449_489_742_783_178, 4.472_135_954_999_58, 8.366_600_265_340_756];
+const ORDERS: std::ops::RangeInclusive<usize> = 2..=4;
 
 /// The median of the absolute value of a normal number of standard deviation 1.
 #[cfg(feature = "simulate")]
@@ -89,31 +88,37 @@ const FEWEST: usize = 20;
 
 /// The standard deviation of what samples have besides a smooth course; none where they do not tell.
 ///
-/// Method: the median of differences of higher order, which outliers do not move and in which a smooth signal is the
-/// smaller the higher the order is: of orders two to four the least. A sensor that rounds to a step scatters by the
-/// twelfth root of it at least. Of a sensor that is missing in most rows the samples that are there follow one another.
+/// Method: the median of divided differences of higher order, which outliers do not move and in which a smooth signal is
+/// the smaller the higher the order is: of orders two to four the least. They are of the samples that are there, at their
+/// places among the rows. A sensor that rounds to a step scatters by the twelfth root of it at least.
 #[cfg(feature = "simulate")]
 fn scatter(values: &[f64]) -> Option<f64> {
-    let present: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    let mut differences = if 2 * present.len() < values.len() { present } else { values.to_vec() };
-    differ(&mut differences);
-    let step = differences.iter().map(|d| d.abs()).filter(|d| *d > 0.0 && d.is_finite()).min_by(f64::total_cmp)?;
-    let of_orders = ORDERS.map(|size| {
-        differ(&mut differences);
-        let known: Vec<f64> = differences.iter().map(|d| d.abs()).filter(|d| d.is_finite()).collect();
-        Some(known).filter(|known| known.len() >= FEWEST).and_then(median).map(|median| median / (MEDIAN * size))
-    });
-    let least = of_orders.into_iter().flatten().min_by(f64::total_cmp)?;
+    let mut place = 0.0;
+    let mut placed = |value: &f64| {
+        place += 1.0;
+        (place, *value)
+    };
+    let present: Vec<(f64, f64)> = values.iter().map(&mut placed).filter(|(_, value)| value.is_finite()).collect();
+    let steps = present.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs());
+    let step = steps.filter(|step| *step > 0.0).min_by(f64::total_cmp)?;
+    let of_order = |order: usize| {
+        let known: Vec<f64> = present.windows(order + 1).map(|samples| difference(samples).abs()).collect();
+        Some(known).filter(|known| known.len() >= FEWEST).and_then(median).map(|median| median / MEDIAN)
+    };
+    let least = ORDERS.filter_map(of_order).min_by(f64::total_cmp)?;
     Some(least.max(step / 12.0_f64.sqrt()))
 }
 
-/// Replaces values by their differences.
+/// The divided difference of samples at these places, of standard deviation 1 where they are noise of that.
 #[cfg(feature = "simulate")]
-fn differ(values: &mut Vec<f64>) {
-    for place in 1..values.len() {
-        values[place - 1] = values[place] - values[place - 1];
-    }
-    values.pop();
+fn difference(samples: &[(f64, f64)]) -> f64 {
+    let factor = |(own, _): &(f64, f64)| {
+        let others = samples.iter().map(|(place, _)| own - place).filter(|apart| *apart != 0.0);
+        1.0 / others.product::<f64>()
+    };
+    let factors: Vec<f64> = samples.iter().map(factor).collect();
+    let size = factors.iter().map(|factor| factor * factor).sum::<f64>().sqrt();
+    samples.iter().zip(&factors).map(|((_, value), factor)| value * factor / size).sum()
 }
 
 #[cfg(feature = "simulate")]
@@ -151,6 +156,15 @@ mod tests {
         (0..500).step_by(50).for_each(|k| holes[k] += 30.0);
         let found = scatter(&holes).unwrap();
         assert!((found / 0.05 - 1.0).abs() < 0.3, "{found}");
+        // Every third sample is missing, or two of three: no three of them are neighbours. The median of 165 differences
+        // that share samples is known to an eighth, and the least of three of them is lower.
+        for (every, keeps) in [(3, false), (3, true)] {
+            let is_kept = |k: usize| (k % every == 0) == keeps;
+            let gaps: Vec<f64> =
+                noisy.iter().enumerate().map(|(k, value)| if is_kept(k) { *value } else { f64::NAN }).collect();
+            let found = scatter(&gaps).unwrap();
+            assert!((found / 0.05 - 1.0).abs() < 0.3, "{found}");
+        }
         // A sensor that comes with every tenth row, of a swing that is as much slower.
         let mut slow = vec![f64::NAN; 5000];
         (0..500).for_each(|k| slow[10 * k] = noisy[k]);

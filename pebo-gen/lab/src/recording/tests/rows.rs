@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::truth::simulated;
 use super::{CART, Failure, Log, faults, refusal, replay, resolve};
 use crate::recording::log::LONGEST;
 
@@ -272,5 +273,41 @@ fn rows_that_show_no_start_are_reported() {
         let mut log = Log::open("log.csv", recording.as_bytes()).expect("a header");
         let found = resolve(&silent, &mut log).expect_err("nothing is shown");
         assert_eq!(found.iter().map(|found| found.message.to_string()).collect::<Vec<_>>(), [expected]);
+    }
+}
+
+/// The table without most cells of a column: each tenth remains.
+fn seldom(csv: &str, name: &str) -> String {
+    let (header, rows) = csv.split_once('\n').expect("a header");
+    let place = header.split(',').position(|column| column == name).expect("a column");
+    let row = |(number, row): (usize, &str)| {
+        let mut cells: Vec<&str> = row.split(',').collect();
+        if number % 10 != 0 {
+            cells[place] = "";
+        }
+        cells.join(",")
+    };
+    std::iter::once(header.to_owned()).chain(rows.lines().enumerate().map(row)).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn outputs_given_by_value_may_be_missing_too() {
+    // A car with a speed at each row, and a position at every tenth, or a speed with an offset.
+    let car = "model: car\nx: [v, b]\ny: [p, s]\nu: [a]\nf_x: {v: a - b, b: 0}\nphi: [v, b]\n";
+    for (outputs, initial) in [("f_y: {p: v}\ng_y: {s: v}\n", ", p: 0"), ("g_y: {p: v + b, s: v}\n", "")] {
+        let scenario = format!(
+            "simulation: {{duration: 20, step: 0.02, initial: {{v: 0, b: 0.1{initial}}}, noise: {{p: 0.5, s: 0.1}}, \
+             control: {{a: 0.5*sin(t)}}}}\n"
+        );
+        let csv = simulated(&format!("{car}{outputs}{scenario}"), (20.0, 0.02)).csv();
+        let (replayed, _) = replay(&format!("{car}{outputs}"), &seldom(&csv, "p")).expect("a replay");
+        let text = replayed.text();
+        assert!(text.contains("in part: 900 of 1001 samples lack an output") && !text.contains("refused"), "{text}");
+        // What the seldom sensor scatters by is known to a third from its first 32 samples.
+        let sensor = &replayed.summary.known.as_ref().expect("numbers").numbers[0].values[0];
+        assert!((sensor.value / 0.5 - 1.0).abs() < 1.0 / 3.0, "{text}");
+        for scored in &replayed.summary.estimates {
+            assert!(scored.score.rms < 3.0 * scored.expected.expect("an error"), "{text}");
+        }
     }
 }
