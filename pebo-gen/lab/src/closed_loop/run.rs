@@ -121,6 +121,7 @@ impl Scenario {
             restarts: machine.driver.restarts(),
             outside: assumed.outside(),
             surprise,
+            typical: machine.driver.typical(),
             contradiction,
             certainty: certain.certainty(),
             known: self.design.settings.known.clone(),

@@ -21,6 +21,12 @@ const OUTSTANDING: f64 = 25.0;
 /// Samples from one judged innovation to the next: each costs a step.
 const JUDGING_INTERVAL: u64 = 16;
 
+/// The first samples of a recording are all judged: one that is off by far is not passed over.
+const RECORDED_JUDGED: u64 = 4096;
+
+/// The first innovations are those of the start: a wrong one says nothing of what follows.
+const OF_START: u64 = 32;
+
 /// A running observer.
 #[derive(Debug)]
 pub(crate) struct ObserverDriver {
@@ -38,12 +44,15 @@ pub(crate) struct ObserverDriver {
     stateless: u64,
     /// Samples since an innovation was judged.
     unjudged: u64,
-    /// Samples from one judged innovation to the next.
+    /// Samples from one judged innovation to the next, after so many that are all judged.
     interval: u64,
+    all_of_first: u64,
     /// The sum of the normalised squares of innovations, and their number.
     surprise: (f64, u64),
     /// Their sum with each at most [`OUTSTANDING`].
     typical: f64,
+    /// The number of those beyond, after the first ones.
+    outstanding: u64,
     /// The logarithm of the likelihood of the judged samples.
     likelihood: f64,
 }
@@ -63,8 +72,10 @@ impl ObserverDriver {
             stateless: 0,
             unjudged: 0,
             interval: JUDGING_INTERVAL,
+            all_of_first: 0,
             surprise: (0.0, 0),
             typical: 0.0,
+            outstanding: 0,
             likelihood: 0.0,
         }
     }
@@ -72,6 +83,11 @@ impl ObserverDriver {
     /// The same, with every sample judged.
     pub(crate) fn judging_each(self) -> Self {
         Self { interval: 1, ..self }
+    }
+
+    /// The same, with the first samples of a recording judged.
+    pub(crate) fn judging_first(self) -> Self {
+        Self { all_of_first: RECORDED_JUDGED, ..self }
     }
 
     /// Takes the outputs at the end of an interval of `dt` seconds and the inputs during it; writes the estimates. A
@@ -82,7 +98,7 @@ impl ObserverDriver {
     pub(crate) fn arrive(&mut self, y: &[f64], u: &[f64], dt: f64, hat: &mut [f64]) -> Result<(), Fault> {
         let is_parted = y.iter().any(|output| output.is_nan());
         self.unjudged += 1;
-        let is_due = self.unjudged >= self.interval && self.gap.is_none();
+        let is_due = (self.unjudged >= self.interval || self.surprise.1 < self.all_of_first) && self.gap.is_none();
         let judgement = is_due.then(|| self.observer.judge(y, u, dt)).flatten();
         let taken = match &self.gap {
             None => self.observer.sample(y, u, dt, hat),
@@ -99,6 +115,7 @@ impl ObserverDriver {
             self.unjudged = 0;
             self.surprise = (self.surprise.0 + square, self.surprise.1 + 1);
             self.typical += square.min(OUTSTANDING);
+            self.outstanding += u64::from(square > OUTSTANDING && self.surprise.1 > OF_START);
             self.likelihood += likelihood;
         }
         let fault = match taken {
@@ -178,6 +195,11 @@ impl ObserverDriver {
     /// The same without what stands out, as a step of a load does: at most five standard deviations of each count.
     pub(crate) fn typical(&self) -> Option<f64> {
         (self.surprise.1 > 0).then(|| self.typical / crate::timing::real(self.surprise.1))
+    }
+
+    /// True if innovations stand out that are not those of the start.
+    pub(crate) fn stands_out(&self) -> bool {
+        self.outstanding > 0
     }
 
     /// The number of innovations behind that.

@@ -398,15 +398,17 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
             |row: &usize| parted.is_none_or(|rows| y.get(rows[*row]).is_none_or(|output| !output.is_nan()));
         let present: Vec<usize> = (0..self.sizes.1).filter(is_present).collect();
         let now = self.observer.now();
-        let Surprise { square, determinant } = match (&self.uncertainty, now.terms()) {
-            (Some(uncertainty), Some(before)) => {
-                let (after, u) = (&pad(y), &pad(u));
-                let interval = Interval { before, after, u, dt, z: self.independent_now() };
-                uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)?
-            }
-            _ if self.is_pending(&innovation) => return None,
-            _ => Surprise { square: innovation.normalised_square, determinant: innovation.determinant },
-        };
+        if self.is_pending(&innovation) {
+            return None;
+        }
+        let with_noise_elsewhere = self.uncertainty.as_ref().zip(now.terms()).and_then(|(uncertainty, before)| {
+            let (after, u) = (&pad(y), &pad(u));
+            let interval = Interval { before, after, u, dt, z: self.independent_now() };
+            uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)
+        });
+        // A sample so far off that its covariance is beyond a double's range stands out by its row alone.
+        let own = Surprise { square: innovation.normalised_square, determinant: innovation.determinant };
+        let Surprise { square, determinant } = with_noise_elsewhere.unwrap_or(own);
         let weights = present.iter().filter_map(|row| self.weights.get(*row));
         let likelihood = -0.5 * (square + determinant.ln()) - weights.map(|weight| weight.ln()).sum::<f64>();
         let count = crate::timing::real(u64::try_from(present.len()).ok()?);

@@ -17,7 +17,7 @@ use crate::observe::padded::observer;
 use crate::score::Scorer;
 use crate::score::domain::DomainMonitor;
 use crate::score::expected::ExpectedErrors;
-use crate::summary::{EstimateScore, Summary, contradiction};
+use crate::summary::{EstimateScore, Summary, contradiction, standing_out};
 use pebo_design::program::Interpreter;
 use pebo_runtime::unwrapped;
 
@@ -91,7 +91,7 @@ impl<'a> Piece<'a> {
             clock: Clock::new(signals.period),
             table: vec![0.0; layout.len()],
             last_outputs: vec![None; layout.y.len()],
-            driver: if judges_each { driver.judging_each() } else { driver },
+            driver: if judges_each { driver.judging_each() } else { driver.judging_first() },
             followers: Vec::new(),
             residuals: residuals.start(),
             errors: (Interpreter::new(&replay.errors), vec![0.0; replay.scored.len()]),
@@ -305,7 +305,7 @@ impl<'a> Piece<'a> {
         self.look();
         let Replay { names, residuals, design, scored, measured, .. } = self.replay;
         let surprise = self.driver.surprise();
-        let contradiction = contradiction(&self.driver, true);
+        let contradiction = contradiction(&self.driver, true).or_else(|| standing_out(&self.driver));
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = measured.get(place).filter(|_| contradiction.is_none());
@@ -333,6 +333,7 @@ impl<'a> Piece<'a> {
                 restarts: self.driver.restarts(),
                 outside: self.assumed.outside(),
                 surprise,
+                typical: self.driver.typical(),
                 contradiction,
                 certainty: self.certain.certainty(),
                 known: design.settings.known.clone(),

@@ -37,10 +37,28 @@ pub(crate) fn advise(
     (estimator, origin): (&Estimator, Origin<'_>),
     where_said: Span,
 ) -> Vec<Diagnostic> {
-    let contradicted = summary.contradiction.map(|factor| contradicted(factor, origin, where_said));
+    let contradicted = summary.contradiction.map(|factor| match summary.is_mostly_as_expected() {
+        true => standing_out(factor, where_said),
+        false => contradicted(factor, origin, where_said),
+    });
     let unsettled = not_converged(summary, (estimator, origin), where_said);
     contradicted.into_iter().chain(unsettled).collect()
 }
+
+/// The advice on a recording of which some samples contradict the observer's numbers, and on average by this factor.
+fn standing_out(factor: f64, where_said: Span) -> Diagnostic {
+    let message = format!(
+        "some innovations stand out: on average they are {} times as large as the observer's numbers say",
+        short(factor)
+    );
+    Diagnostic::warning(Code::NumbersContradicted, where_said, message)
+        .note("the plant does more than its model says there, or samples are off by far: no `sensors` fit both")
+        .help(GATE)
+}
+
+/// The advice on samples that are off by far.
+const GATE: &str = "`gate: 25` under `observer` refuses samples that are off by far, `limits` those that a sensor cannot show; \
+                    where the plant itself steps, raise `disturbance` of what does";
 
 /// The advice on samples that contradict the observer's numbers by this factor.
 fn contradicted(factor: f64, origin: Origin<'_>, where_said: Span) -> Diagnostic {
@@ -61,7 +79,8 @@ fn contradicted(factor: f64, origin: Origin<'_>, where_said: Span) -> Diagnostic
         (true, Origin::Simulated(..)) => diagnostic.help("raise `sensors` to what samples scatter by"),
         (true, Origin::Recorded) => diagnostic.help(
             "let `replay --fit` find numbers with which they agree; or raise `disturbance` by as much where the plant does \
-             more than its model says, `sensors` where samples scatter more than that",
+             more than its model says, `sensors` where samples scatter more than that; or write `limits` where a logger has \
+             -9999 for a missing sample",
         ),
         (false, _) => diagnostic
             .note(format!("the simulation has {}", listed(others.iter().copied())))

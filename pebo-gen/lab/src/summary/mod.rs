@@ -41,6 +41,8 @@ pub struct Summary {
     /// The normalised square of the innovation, on average over samples and rows: 1 where model and numbers are right;
     /// none where the observer does not know its sensors.
     pub surprise: Option<f64>,
+    /// The same without what stands out: at most five standard deviations of each count.
+    pub typical: Option<f64>,
     /// How many times as large innovations are as the observer's numbers say, where these are contradicted: then no
     /// standard error is expected.
     pub contradiction: Option<f64>,
@@ -115,6 +117,13 @@ pub(crate) fn contradiction(driver: &ObserverDriver, is_noisy: bool) -> Option<f
     Some(driver.surprise()?.sqrt())
 }
 
+/// The same of recorded innovations of which most are as expected, and some so large that their mean is not: a step of the
+/// plant, or samples that are off by far. In a simulation they come from the scenario.
+pub(crate) fn standing_out(driver: &ObserverDriver) -> Option<f64> {
+    let mean = driver.surprise().filter(|square| square > CREDIBLE.end() && driver.stands_out())?;
+    Some(mean.sqrt())
+}
+
 impl Summary {
     /// The states whose estimates by the model's own observer did not settle.
     pub fn unsettled(&self) -> Vec<&EstimateScore> {
@@ -159,10 +168,21 @@ impl Summary {
     /// What is to be known before the table is read.
     pub fn foremost(&self) -> Option<String> {
         let factor = short(self.contradiction?);
+        if self.is_mostly_as_expected() {
+            return Some(format!(
+                "innovations: most as expected, but some stand out, so that on average they are {factor} times as large as the \
+                 numbers of the observer say; no standard error is expected"
+            ));
+        }
         Some(format!(
             "innovations: {factor} times as large as the numbers of the observer say, which do not fit these samples; no \
              standard error is expected"
         ))
+    }
+
+    /// True if innovations are as the numbers say but for some that stand out.
+    pub(crate) fn is_mostly_as_expected(&self) -> bool {
+        self.typical.is_some_and(|typical| CREDIBLE.contains(&typical))
     }
 
     /// The lines below the table.

@@ -215,6 +215,47 @@ fn innovations_of_which_some_are_far_too_large_are_not_as_expected() {
     assert!(some.contains("`gate: 25`") && !notes(1.2).contains("gate"), "{some}");
 }
 
+/// A body that coasts, its position with an error of one millimetre; at some rows it is off by so much.
+fn with_outliers(outlier: f64) -> String {
+    let noise = |k: u32| (f64::from(k) * 1.7).sin() + (f64::from(k * k) * 0.61).cos();
+    let row = |k: u32| {
+        let q = f64::from(k) / 64.0 + 1e-3 * noise(k) + if k % 50 == 49 { outlier } else { 0.0 };
+        format!("{},{q},0\n", f64::from(k) / 64.0)
+    };
+    (0..400).map(row).collect()
+}
+
+#[test]
+fn samples_that_are_off_by_far_contradict_the_numbers_and_are_said_to_stand_out() {
+    let told =
+        BODY.replace("simulation:", "observer: {sensors: {q: 0.001}, start: {v: 2}, disturbance: {v: 0}}\nsimulation:");
+    let run = |outlier: f64| {
+        let rows = format!("t,q,f\n{}", with_outliers(outlier));
+        let mut log = Log::open("log.csv", rows.as_bytes()).expect("a header");
+        let replay = resolve(&told, &mut log).expect("the columns have a meaning");
+        let replayed = replay.run(&mut log, None, &mut |_, _| ControlFlow::Continue(())).expect("a replay");
+        let said: Vec<String> = replay
+            .advise(&replayed)
+            .iter()
+            .map(|d| format!("{} {}", d.message, d.help.as_deref().unwrap_or("")))
+            .collect();
+        (replayed.summary, said)
+    };
+    let (clean, said) = run(0.0);
+    assert!(clean.contradiction.is_none() && said.is_empty(), "{} {said:?}", clean.text());
+    // One in fifty samples, so that most of them are as expected; and beyond the range of a double's covariance.
+    for (outlier, standing_out) in [(0.03, true), (1e200, false)] {
+        let (found, said) = run(outlier);
+        assert!(found.contradiction.is_some_and(|factor| factor > 3.0), "{}", found.text());
+        assert!(found.text().starts_with("innovations: "), "{}", found.text());
+        assert_eq!(
+            said.iter().any(|said| said.contains("stand out") && said.contains("`gate: 25`")),
+            standing_out,
+            "{said:?}"
+        );
+    }
+}
+
 #[test]
 fn a_plant_that_is_recorded_from_rest_has_the_rates_of_its_later_rows() -> Result<(), Failure> {
     // The force of 6 begins after the first row, which has none.
