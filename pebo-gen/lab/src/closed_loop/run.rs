@@ -254,7 +254,7 @@ impl<'a> LoopState<'a> {
             self.scenario.sensors.leave_out(sample, &mut y);
             let y = Some(y.as_slice()).filter(|_| arrives);
             let u = &self.table[self.scenario.layout.u.clone()];
-            self.followers.iter_mut().for_each(|follower| follower.sample(y, u, self.scenario.timing.step));
+            self.followers.iter_mut().for_each(|follower| follower.sample(y, [u, u], self.scenario.timing.step));
         }
         self.estimate(sample, arrives)
     }

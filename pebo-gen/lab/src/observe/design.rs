@@ -31,6 +31,9 @@ pub(crate) struct Design {
     pub(crate) outputs: usize,
     /// The number of inputs u.
     pub(crate) inputs: usize,
+    /// True if the observer is given the inputs at the end of an interval after those during it: outputs that are given by
+    /// their values have these.
+    pub(crate) with_instant: bool,
     /// The names of both.
     pub(crate) names: SignalNames,
     /// The number of coordinates z.
@@ -155,6 +158,7 @@ impl Design {
             partial: partial(plant, regression, &settings),
             outputs: plant.y.len(),
             inputs: plant.u.len(),
+            with_instant: false,
             names: SignalNames {
                 outputs: y.iter().map(|output| arena.name(*output)).collect(),
                 inputs: plant.u.iter().map(|input| arena.name(*input)).collect(),
@@ -178,8 +182,16 @@ impl Design {
     /// The largest number of quantities of one kind.
     pub(crate) fn size(&self) -> usize {
         let regression = self.equations.max(self.unknowns);
-        let plant = self.outputs.max(self.inputs).max(self.coordinates);
+        let inputs = if self.with_instant { 2 * self.inputs } else { self.inputs };
+        let plant = self.outputs.max(inputs).max(self.coordinates);
         plant.max(regression).max(self.recovered.len()).max(self.settings.chi_0.len())
+    }
+
+    /// The same with the inputs at the end of an interval beside those during it; as it is where samples are not taken as
+    /// they are, or there is no room.
+    pub(crate) fn with_instant(self) -> Self {
+        let has_room = 2 * self.inputs <= LARGEST;
+        Self { with_instant: has_room && matches!(self.settings.operator, Operator::Sampled(_)), ..self }
     }
 
     /// True if it predicts the standard errors of its estimates.

@@ -105,7 +105,10 @@ impl ObserverDriver {
             Some(gap) => {
                 let mut whole = *gap;
                 whole.add(&pad(u), dt).and_then(|()| {
-                    let (mean, time) = whole.take();
+                    let (mut mean, time) = whole.take();
+                    // Inputs of the instant are no mean.
+                    let during = self.names.inputs.len();
+                    mean.iter_mut().zip(u).skip(during).for_each(|(mean, now)| *mean = *now);
                     self.observer.sample(y, &mean.as_slice()[..u.len()], time, hat)
                 })
             }

@@ -83,6 +83,8 @@ impl<const N: usize> ReadableExtension<N> for Fundamental<f64, N> {
 pub(super) struct Derived<X, K, const N: usize> {
     ny: usize,
     inputs: usize,
+    /// True if after the inputs of the interval those of the instant at its end follow.
+    with_instant: bool,
     nz: usize,
     nr: usize,
     ne: usize,
@@ -117,6 +119,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
             known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
             inputs: design.inputs,
+            with_instant: design.with_instant,
             nz: design.coordinates,
             nr: design.equations,
             ne: design.unknowns,
@@ -305,6 +308,9 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
     }
 
     fn regression(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        let at_instant =
+            self.with_instant.then(|| SVector::from_iterator(u.iter().copied().cycle().skip(self.inputs).take(N)));
+        let u = at_instant.as_ref().unwrap_or(u);
         let Some((rows, _)) = self.output else { return self.sides(extension, y, u) };
         let mut held = self.primitive(extension, y);
         let mut through = SMatrix::<f64, N, N>::zeros();

@@ -10,6 +10,7 @@
 //!
 //! Holds: memory does not grow with the recording; the same rows give the same estimates, to the last bit.
 
+mod alignment;
 mod clock;
 mod failure;
 mod fault;

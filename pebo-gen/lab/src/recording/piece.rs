@@ -229,12 +229,18 @@ impl<'a> Piece<'a> {
         let (given, hat) = self.table.split_at_mut(layout.hat.start);
         let (y, u) = (&given[layout.y.clone()], &given[layout.u.clone()]);
         let is_first = !self.driver.has_started();
-        let taken = self.driver.arrive(y, u, step, &mut hat[..layout.hat.len()]);
+        let with_instant = self.replay.design.with_instant;
+        let instant = inputs.iter().zip(u).filter(|_| with_instant);
+        let instant = instant.map(|(now, before)| if now.is_finite() { *now } else { *before });
+        let time = layout.measured_time.filter(|_| with_instant).map(|_| t);
+        let both: Vec<f64> = u.iter().copied().chain(instant).chain(time).collect();
+        let taken = self.driver.arrive(y, &both, step, &mut hat[..layout.hat.len()]);
+        let after = if with_instant { &both[u.len()..] } else { u };
         if is_first {
             let begun = self.replay.baselines.iter().filter(|_| taken.is_ok());
             self.followers = begun.map(|(_, sampled)| sampled.follower(None, y)).collect();
         } else {
-            self.followers.iter_mut().for_each(|follower| follower.sample(Some(y), u, step));
+            self.followers.iter_mut().for_each(|follower| follower.sample(Some(y), [u, after], step));
         }
         layout.measured_time.into_iter().for_each(|measured_time| self.table[measured_time] = t);
         for ((place, _), follower) in self.replay.baselines.iter().zip(&self.followers) {
@@ -242,6 +248,9 @@ impl<'a> Piece<'a> {
         }
         if taken.is_err() {
             return false;
+        }
+        if with_instant {
+            self.hold(inputs);
         }
         let (since, whole) = (t - self.whole, self.is_whole());
         (self.taken, self.samples) = (t, self.samples + 1);

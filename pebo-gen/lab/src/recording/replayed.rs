@@ -16,6 +16,9 @@ pub struct Replayed {
     pub scored: u64,
     /// The time of the first of these, in seconds; times of the summary count from there.
     pub start: f64,
+    /// True if inputs stand in the outputs of their own row, else in those of the next.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub inputs_at_once: bool,
     /// The errors of estimates whose states were measured, the excitation, and the samples that the observer refused.
     pub summary: Summary,
     /// The residuals of the outputs.
@@ -43,12 +46,15 @@ pub struct OutputResidual {
 impl Replayed {
     /// For people: a table of errors, and a line for each output, and for each kind of fault.
     pub fn text(&self) -> String {
-        let Self { rows, scored, start, summary, residuals, left_out, faults, .. } = self;
+        let Self { rows, scored, start, inputs_at_once, summary, residuals, left_out, faults, .. } = self;
         let mut text = if scored == rows { format!("{rows} rows") } else { format!("{scored} of {rows} rows,") };
         let counted = if *start == 0.0 { "" } else { ", from the first of which times count" };
         let place = format!(" from t = {start} s to {} s{counted}\n", start + summary.end);
         text.push_str(&place);
         text.push_str(&summary.text());
+        if *inputs_at_once {
+            text.push_str("inputs: sampled with the outputs of their row\n");
+        }
         let residual = |OutputResidual { output, unit, score }: &OutputResidual| {
             let unit = unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
             let [rms, worst, since] = [score.rms, score.worst, score.since].map(short);

@@ -247,6 +247,17 @@ impl<'a, 'w> ReplayState<'a, 'w> {
             curves: &self.curves.finish(),
         };
         let figure = sheet.draw();
-        Ok(Replayed { rows, scored, start, summary, residuals, left_out: names.left_out.clone(), faults, figure })
+        let inputs_at_once = self.replay.design.with_instant;
+        Ok(Replayed {
+            rows,
+            scored,
+            start,
+            inputs_at_once,
+            summary,
+            residuals,
+            left_out: names.left_out.clone(),
+            faults,
+            figure,
+        })
     }
 }

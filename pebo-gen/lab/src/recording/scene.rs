@@ -21,6 +21,7 @@ use pebo_design::plant::Plant;
 use pebo_design::program::Program;
 use pebo_design::source::{Diagnostic, Diagnostics, Span};
 
+use super::alignment::InputRow;
 use super::layout::Layout;
 use super::log::Log;
 use super::panels::Panels;
@@ -117,12 +118,13 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     let (plant, arena, span) = (request.plant, &request.plant.arena, request.section);
     let numbers = request.numbers();
     let signals = Signals::resolve(request, log, problems);
-    let shown = match &signals {
+    let (shown, input_row) = match &signals {
         Some(signals) => signals.shown(request, log, problems)?,
-        None => Shown::default(),
+        None => (Shown::default(), InputRow::Before),
     };
     let design = Design::resolve(request, derivation, &numbers, &shown, problems);
     let (signals, design) = (signals?, design?);
+    let design = if input_row == InputRow::Same { design.with_instant() } else { design };
     let (baselines, left_out) = baselines(request, &design, problems);
     let (named, resolved): (Vec<&str>, Vec<NamedBaseline>) = baselines.into_iter().unzip();
     let layout = Layout::new(plant, &signals.measured, &design, &named);

@@ -15,6 +15,7 @@ use pebo_design::plant::{Scope, lower};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
+use super::alignment::InputRow;
 use super::log::{Log, Unreadable};
 
 /// The signals of a row.
@@ -75,7 +76,12 @@ const ENOUGH: usize = 32;
 impl Signals {
     /// What the first rows show of the plant; nothing where they cannot be read, which the run will report. Rows that do
     /// not show where an observer begins whose gains follow from that are reported.
-    pub(super) fn shown(&self, request: &Request, log: &mut Log, problems: &mut Diagnostics) -> Option<Shown> {
+    pub(super) fn shown(
+        &self,
+        request: &Request,
+        log: &mut Log,
+        problems: &mut Diagnostics,
+    ) -> Option<(Shown, InputRow)> {
         let plant = request.plant;
         let signals = self.measured.iter().map(|state| plant.x[*state].symbol);
         let outputs: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
@@ -103,7 +109,7 @@ impl Signals {
             return None;
         }
         let period = self.period.map(|(above, below)| above / below);
-        Some(Shown::by_samples((&times, period), &samples, &outputs))
+        Some((Shown::by_samples((&times, period), &samples, &outputs), InputRow::of(plant, &samples)))
     }
 
     /// The first rows: as many as each output needs, if there are as many.

@@ -171,8 +171,8 @@ fn luenberger(
 
 /// A running observer of any size.
 pub(crate) trait Follower: fmt::Debug {
-    /// Takes the inputs during an interval of `dt` seconds, and the outputs at its end if their sample arrived.
-    fn sample(&mut self, y: Option<&[f64]>, u: &[f64], dt: f64);
+    /// Takes the inputs during an interval of `dt` seconds and at its end, and the outputs there if their sample arrived.
+    fn sample(&mut self, y: Option<&[f64]>, u: [&[f64]; 2], dt: f64);
 
     /// Writes the estimates of x; NaN where it has none.
     fn write(&self, hat: &mut [f64]);
@@ -222,15 +222,15 @@ impl<const N: usize> PaddedFollower<N> {
 }
 
 impl<const N: usize> Follower for PaddedFollower<N> {
-    fn sample(&mut self, y: Option<&[f64]>, u: &[f64], dt: f64) {
-        let Ok(step) = self.plant.advance(&self.state, u, dt) else {
+    fn sample(&mut self, y: Option<&[f64]>, [during, after]: [&[f64]; 2], dt: f64) {
+        let Ok(step) = self.plant.advance(&self.state, during, dt) else {
             self.state.fill(f64::NAN);
             return;
         };
         self.gain.predict(&step, dt);
         self.state = step.state;
         let Some(y) = y else { return };
-        let (predicted, slopes) = self.plant.measure(&step.state, u);
+        let (predicted, slopes) = self.plant.measure(&step.state, after);
         let mut sample = Sample { innovation: pad::<N>(y) - predicted, slopes };
         for output in (0..y.len()).filter(|output| y[*output].is_nan()) {
             sample.innovation[output] = 0.0;

@@ -311,3 +311,29 @@ fn outputs_given_by_value_may_be_missing_too() {
         }
     }
 }
+
+#[test]
+fn an_output_with_an_input_in_it_is_compared_with_the_input_of_its_own_row() {
+    let cell = "model: cell\nparameters: {Q: 7200, R: 0.05}\nx: [s]\ny: [V]\nu: [I]\nf_x: {s: -I/Q}\n\
+                g_y: {V: 3 + s - R*I}\nphi: [s]\nobserver: {sensors: {V: 1e-4}, start: {s: 1}, disturbance: {s: 0}}\n";
+    let current = |k: u32| if k % 60 < 30 { 2.0 } else { 0.0 };
+    let table = |lag: u32| {
+        let mut charge = 0.8;
+        let mut text = "t,V,I,s\n".to_owned();
+        for k in 1..300 {
+            // Held from row to row, as a controller does; the voltage just before or just after it changes.
+            charge -= current(k - 1) / 7200.0;
+            let noise = 1e-4 * (f64::from(k * k) * 1.3).sin();
+            text += &format!("{k},{},{},{charge}\n", 3.0 + charge - 0.05 * current(k - lag) + noise, current(k));
+        }
+        text
+    };
+    for lag in [0, 1] {
+        let (replayed, _) = replay(cell, &table(lag)).expect("a replay");
+        let text = replayed.text();
+        assert_eq!(replayed.inputs_at_once, lag == 0, "{text}");
+        assert_eq!(text.contains("inputs: sampled with the outputs of their row\n"), lag == 0, "{text}");
+        let scored = &replayed.summary.estimates[0];
+        assert!(scored.score.rms < 3.0 * scored.expected.expect("an error"), "{text}");
+    }
+}
