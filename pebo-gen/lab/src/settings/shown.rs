@@ -159,7 +159,7 @@ mod tests {
         // Every third sample is missing, or two of three: no three of them are neighbours. The median of 165 differences
         // that share samples is known to an eighth, and the least of three of them is lower.
         for (every, keeps) in [(3, false), (3, true)] {
-            let is_kept = |k: usize| (k % every == 0) == keeps;
+            let is_kept = |k: usize| k.is_multiple_of(every) == keeps;
             let gaps: Vec<f64> =
                 noisy.iter().enumerate().map(|(k, value)| if is_kept(k) { *value } else { f64::NAN }).collect();
             let found = scatter(&gaps).unwrap();

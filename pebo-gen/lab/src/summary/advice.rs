@@ -37,9 +37,12 @@ pub(crate) fn advise(
     (estimator, origin): (&Estimator, Origin<'_>),
     where_said: Span,
 ) -> Vec<Diagnostic> {
-    let contradicted = summary.contradiction.map(|factor| match summary.is_mostly_as_expected() {
-        true => standing_out(factor, where_said),
-        false => contradicted(factor, origin, where_said),
+    let contradicted = summary.contradiction.map(|factor| {
+        if summary.is_mostly_as_expected() {
+            standing_out(factor, where_said)
+        } else {
+            contradicted(factor, origin, where_said)
+        }
     });
     let unsettled = not_converged(summary, (estimator, origin), where_said);
     contradicted.into_iter().chain(unsettled).collect()

@@ -319,14 +319,13 @@ fn an_output_with_an_input_in_it_is_compared_with_the_input_of_its_own_row() {
     let current = |k: u32| if k % 60 < 30 { 2.0 } else { 0.0 };
     let table = |lag: u32| {
         let mut charge = 0.8;
-        let mut text = "t,V,I,s\n".to_owned();
-        for k in 1..300 {
+        let row = |k: u32| {
             // Held from row to row, as a controller does; the voltage just before or just after it changes.
             charge -= current(k - 1) / 7200.0;
             let noise = 1e-4 * (f64::from(k * k) * 1.3).sin();
-            text += &format!("{k},{},{},{charge}\n", 3.0 + charge - 0.05 * current(k - lag) + noise, current(k));
-        }
-        text
+            format!("{k},{},{},{charge}\n", 3.0 + charge - 0.05 * current(k - lag) + noise, current(k))
+        };
+        "t,V,I,s\n".to_owned() + &(1..300).map(row).collect::<String>()
     };
     for lag in [0, 1] {
         let (replayed, _) = replay(cell, &table(lag)).expect("a replay");
