@@ -274,6 +274,19 @@ fn a_transform_that_takes_no_samples_is_preferred_to_a_plainer_one() {
     assert_eq!(plain.plant.noisier, None);
 }
 
+/// Pitch and a sensor's bias from two accelerometers and a gyroscope: gravity in the axes of the body turns, and its
+/// samples as they are need no model of that.
+#[test]
+fn functions_that_turn_are_preferred_to_the_samples_that_show_them() {
+    let pitch = "parameters: {g: 10}\nx: [th, ba]\ny: [ax, az]\nu: [w]\nangles: {th: 2*pi}\nf_x: {th: w, ba: 0}\n\
+                 g_y: {ax: g*sin(th) + ba, az: g*cos(th)}";
+    let chosen = solve(&plant(pitch), None).candidates.swap_remove(0);
+    assert_eq!(chosen.formulas(), ["ba", "sin(th)", "cos(th)"]);
+    assert!(chosen.is_full() && chosen.unfiltered().is_empty());
+    let noisier = chosen.plant.noisier.expect("named");
+    assert_eq!(noisier.unfiltered.len(), 2);
+}
+
 #[test]
 fn a_plain_cascade_is_preferred_where_no_value_of_an_output_is_needed() {
     let plant = plant("parameters: {c: 0.35}\nx: [v]\ny: [p]\nu: [a]\nf_x: {v: a - c*v}\nf_y: {p: v}");
