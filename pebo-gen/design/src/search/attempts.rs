@@ -154,8 +154,8 @@ impl Attempts<'_> {
     /// in all of its forms, a generalised one may do without; likewise where it has exceptions.
     fn is_over(&self) -> bool {
         let is_plain = self.class == Class::Pebo;
-        let is_quiet =
-            |c: &Candidate| !c.copies_an_output() && (is_plain || c.unfiltered().is_empty() && c.is_everywhere());
+        let is_filtered = |c: &Candidate| c.unfiltered().is_empty() && c.multiplied() == 0;
+        let is_quiet = |c: &Candidate| !c.copies_an_output() && (is_plain || is_filtered(c) && c.is_everywhere());
         !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && is_quiet(c))
     }
 
@@ -486,7 +486,9 @@ impl Attempts<'_> {
             if self.is_over() || !self.known.insert(phi.clone()) {
                 continue;
             }
-            if index == 0 && choice.affine {
+            // The equations of values may be affine in the states where their rates are not.
+            let by_values = form == Form::States && self.problem.plant.y.iter().any(|output| output.value.is_some());
+            if index == 0 && (choice.affine || by_values) {
                 self.prove(&phi);
             } else {
                 self.later.push(phi);

@@ -1,5 +1,7 @@
 //! A transform that was found, with its derivation.
 
+use std::collections::BTreeSet;
+
 use crate::analysis::{Class, Derivation, Excitation, Outcome, Verdict};
 use crate::plant::Plant;
 use pebo_cas::domain::zero::is_zero;
@@ -90,9 +92,9 @@ impl Candidate {
     }
 
     /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
-    /// affine in z and few exceptions, takes few samples as they are, and has the plainer form.
+    /// affine in z and few exceptions, takes few samples as they are, multiplies few, and has the plainer form.
     pub(super) fn merit(&self) -> impl Ord + use<> {
-        (self.standing(), self.conditions.len(), self.unfiltered().len(), self.form())
+        (self.standing(), self.conditions.len(), self.unfiltered().len(), self.multiplied(), self.form())
     }
 
     /// The order of candidates by what they are worth whatever the noise of the sensors is.
@@ -126,7 +128,7 @@ impl Candidate {
     /// output. In the regression, where the value is an equation, the noise of samples is averaged; here it is not.
     pub(super) fn unfiltered(&self) -> Vec<(Symbol, Symbol)> {
         let arena = &self.plant.arena;
-        let given: Vec<Symbol> = self.plant.y.iter().filter(|y| y.value.is_some()).map(|y| y.symbol).collect();
+        let given: Vec<Symbol> = self.given().collect();
         let taken = |(state, formula): &(Symbol, Expr)| {
             let held = arena.symbols_of(&[*formula]);
             let state = *state;
@@ -138,10 +140,31 @@ impl Candidate {
     /// Tests whether a state is a sample as it is, and samples of outputs given by value are factors of the unknowns:
     /// their noise does not average out.
     pub(super) fn multiplies_samples(&self) -> bool {
-        let given = self.plant.y.iter().filter(|y| y.value.is_some()).map(|y| y.symbol).collect();
+        let given = self.given().collect();
         let holds_samples = |row: &Vec<Expr>| row.iter().any(|entry| self.plant.arena.depends_on(*entry, &given));
         let regression = self.derivation.regression.result.as_ref();
         self.copies_an_output() && regression.is_some_and(|regression| regression.phi_1.iter().any(holds_samples))
+    }
+
+    /// The outputs given by their values.
+    fn given(&self) -> impl Iterator<Item = Symbol> {
+        self.plant.y.iter().filter(|output| output.value.is_some()).map(|output| output.symbol)
+    }
+
+    /// The number of outputs given by value of which each equation has samples among the factors of the unknowns: their
+    /// noise does not average out.
+    pub(super) fn multiplied(&self) -> usize {
+        let Some(regression) = &self.derivation.regression.result else { return 0 };
+        let (arena, given): (_, BTreeSet<Symbol>) = (&self.plant.arena, self.given().collect());
+        let rows = || regression.phi_0.iter().zip(&regression.phi_1);
+        let is_multiplied = |output: &Symbol| {
+            let own = BTreeSet::from([*output]);
+            let holds = |row: &[Expr], symbols| row.iter().any(|factor| arena.depends_on(*factor, symbols));
+            let is_used = rows().any(|(known, row)| arena.depends_on(*known, &own) || holds(row, &own));
+            let is_plain = |(known, row): (&Expr, &Vec<Expr>)| arena.depends_on(*known, &own) && !holds(row, &given);
+            is_used && !rows().any(is_plain)
+        };
+        given.iter().filter(|output| is_multiplied(output)).count()
     }
 
     /// Tests whether a state is recovered with all the noise of an output that determines it: by a component that is

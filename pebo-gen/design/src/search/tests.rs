@@ -287,6 +287,19 @@ fn functions_that_turn_are_preferred_to_the_samples_that_show_them() {
     assert_eq!(noisier.unfiltered.len(), 2);
 }
 
+/// A wheel that multiplies its sample by its radius: rates in 1/R say no more. And a wheel that multiplies the speed: a
+/// product that is estimated has no sample for a factor.
+#[test]
+fn few_components_are_preferred_unless_more_of_them_multiply_fewer_samples() {
+    let chosen = |lines: &str| solve(&plant(lines), None).candidates.swap_remove(0).formulas();
+    let radius = "x: [v, b, R]\ny: [gps, wheel]\nu: [a]\nassume: [R > 0]\nf_x: {v: a - b, b: 0, R: 0}\n\
+                  g_y: {gps: v, wheel: v/R}";
+    assert_eq!(chosen(radius), ["v", "b", "R"]);
+    let grade = "parameters: {g: 10, c: 0.2}\nx: [v, s, k]\ny: [p, wheel, acc]\nu: [F]\n\
+                 f_x: {v: F - c*v - g*s, s: 0, k: 0}\nf_y: {p: v}\ng_y: {wheel: k*v, acc: F - c*v}";
+    assert_eq!(chosen(grade), ["v", "s", "k", "v*k", "s*k"]);
+}
+
 #[test]
 fn a_plain_cascade_is_preferred_where_no_value_of_an_output_is_needed() {
     let plant = plant("parameters: {c: 0.35}\nx: [v]\ny: [p]\nu: [a]\nf_x: {v: a - c*v}\nf_y: {p: v}");
