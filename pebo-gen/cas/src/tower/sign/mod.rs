@@ -2,8 +2,8 @@
 //!
 //! In: a polynomial over the kernels, the facts. Out: a sign that holds wherever the facts hold and the kernels have
 //! values, or none. The rules are sound and simple: numbers, kernels ([`kernel`]), sums of like signs, facts
-//! ([`facts`]), factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), distances
-//! from bounds ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] decides, with the algebra
+//! ([`facts`]), factors, differences of exponentials ([`exponential`]), discriminants ([`discriminant`]), sums with
+//! roots ([`root`]), distances from bounds ([`shift`]), and last enclosures over the box that the facts state. [`Signs`] decides, with the algebra
 //! of a field; [`SignMemory`] is kept between queries. The field holds it, and never reads it: roots and logarithms
 //! depend on signs, so that the field queries too.
 
@@ -13,6 +13,7 @@ mod facts;
 mod kernel;
 mod memo;
 mod points;
+mod root;
 mod shift;
 
 use std::cell::{Cell, RefCell};
@@ -146,6 +147,9 @@ impl Signs<'_, '_> {
         if let Some(sign) = self.by_discriminant(&rest)? {
             return Ok(Some(sign));
         }
+        if let Some(sign) = self.by_root(&rest)? {
+            return Ok(Some(sign));
+        }
         self.by_shift(&rest)
     }
 
@@ -194,6 +198,9 @@ impl Signs<'_, '_> {
         }
         if sign.is_none() {
             sign = self.by_discriminant(&rest)?;
+        }
+        if sign.is_none() {
+            sign = self.by_root(&rest)?;
         }
         if sign.is_none() {
             sign = self.by_shift(&rest)?;
