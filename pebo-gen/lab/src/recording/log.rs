@@ -30,6 +30,8 @@ const MARK: &[u8] = b"\xef\xbb\xbf";
 pub struct Log<'a> {
     name: String,
     columns: Vec<String>,
+    /// The units of the columns, where a row has them.
+    units: Vec<String>,
     lines: Lines<'a>,
     row: Row,
     values: Values,
@@ -227,12 +229,17 @@ impl<'a> Log<'a> {
         }
         let columns: Vec<String> = row.cells().enumerate().map(|(place, name)| spelled(place, name)).collect();
         let values = Values { has_decimal_comma: delimiter != b',', first: vec![None; columns.len()] };
-        Ok(Self { name: name.into(), columns, lines, row, values, has_begun: false })
+        Ok(Self { name: name.into(), columns, units: Vec::new(), lines, row, values, has_begun: false })
     }
 
     /// Its name in messages.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The units of the columns, if a row below the header has them and was read.
+    pub(super) fn units(&self) -> &[String] {
+        &self.units
     }
 
     /// The names of the columns, as formulas write them.
@@ -310,7 +317,11 @@ impl<'a> Log<'a> {
         let Self { row, values, lines, .. } = self;
         let is_closed = row.split(&lines.line);
         let mut others = row.cells().filter(|cell| !cell.is_empty() && *cell != b"1").peekable();
-        is_closed && others.peek().is_some() && others.all(|cell| values.is_word(cell))
+        let is_row = is_closed && others.peek().is_some() && others.all(|cell| values.is_word(cell));
+        if is_row {
+            self.units = row.cells().map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
+        }
+        is_row
     }
 
     fn take(

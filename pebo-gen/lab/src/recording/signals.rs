@@ -108,8 +108,43 @@ impl Signals {
             ));
             return None;
         }
+        if let Some(found) = self.time_in_another_unit(request, log) {
+            problems.push(found);
+        }
         let period = self.period.map(|(above, below)| above / below);
+        let stands = self.period.is_none() && !times.windows(2).any(|pair| pair[1] > pair[0]);
+        if stands && !request.model.observer.has_gains() && request.model.simulation.is_none() {
+            let message = match times.len() {
+                1 => format!("{} has one row", log.name()),
+                rows => format!("the time of {} does not increase in its first {rows} rows", log.name()),
+            };
+            problems.push(Diagnostic::error(Code::RecordingMalformed, Span::NOWHERE, message).help(
+                "give rows in the order of their times, which say how often samples come; or that under `recording`, as \
+                 `step: 1e-3`",
+            ));
+            return None;
+        }
         Some((Shown::by_samples((&times, period), &samples, &outputs), InputRow::of(plant, &samples)))
+    }
+
+    /// A column `t` that is taken for seconds, where the row of units says another unit.
+    fn time_in_another_unit(&self, request: &Request, log: &Log) -> Option<Diagnostic> {
+        let is_column =
+            self.period.is_none() && request.model.recording.as_ref().is_none_or(|written| written.t.is_none());
+        let place = log.columns().iter().position(|column| column == Recording::T).filter(|_| is_column)?;
+        let unit = log.units().get(place)?.trim_matches(['[', ']', '(', ')']).to_lowercase();
+        let seconds = match unit.as_str() {
+            "ms" | "msec" => "t/1000",
+            "us" | "µs" | "μs" | "usec" => "t/1e6",
+            "ns" => "t/1e9",
+            "min" => "60*t",
+            "h" | "hr" => "3600*t",
+            _ => return None,
+        };
+        let message =
+            format!("the times of {} are in {unit}, as its row of units says, and not in seconds", log.name());
+        let help = format!("write `recording: {{t: {seconds}}}`");
+        Some(Diagnostic::error(Code::RecordingMalformed, Span::NOWHERE, message).help(help))
     }
 
     /// The first rows: as many as each output needs, if there are as many.
@@ -261,7 +296,12 @@ impl SignalResolver<'_> {
             return self.formula(&entry.value);
         }
         let column = self.column(name);
-        if column.is_none() {
+        if self.columns.places.get(name) == Some(&None) {
+            let message = format!("{} has several columns `{name}`", self.log.name());
+            let help = format!("rename all but one, or remove them: which is `{name}` is not said");
+            let found = Diagnostic::error(Code::RecordingIncomplete, self.request.section, message);
+            self.problems.push(found.note(self.listed()).help(help));
+        } else if column.is_none() {
             let help = format!("add `{name}`, a formula in columns and parameters, under `recording`");
             self.lacks(&format!("`{name}`"), &help);
         }

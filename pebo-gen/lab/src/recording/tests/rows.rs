@@ -264,6 +264,13 @@ fn rows_that_show_no_start_are_reported() {
     for (recording, expected) in [
         ("t,q,f\n", "log.csv has no rows"),
         ("t,q,f\n0,,0\n0.1,nan,0\n", "none of the first 2 rows of log.csv has a value of `q`"),
+        ("t,q,f\n0,1,0\n", "log.csv has one row"),
+        ("t,q,f\n2,0,0\n1,0,0\n0,0,0\n", "the time of log.csv does not increase in its first 3 rows"),
+        (
+            "t,q,f\n[ms],m,N\n0,0,0\n1,0,0\n",
+            "the times of log.csv are in ms, as its row of units says, and not in seconds",
+        ),
+        ("t,q,q,f\n0,0,0,0\n1,0,0,0\n", "log.csv has several columns `q`"),
         ("t,q,f\n0,0,ERR\n0.1,0,0\n", "log.csv, line 2, column 3: `ERR` in the column `f` is not a number"),
         (
             "t,q,f\n27.11.2026 10:00,0,0\n28.11.2026 10:00,0,0\n",
