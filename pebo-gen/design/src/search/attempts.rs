@@ -55,7 +55,7 @@ pub(super) fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> A
         others.run(class);
         attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
-    let is_quiet = |c: &Candidate| c.is_full() && !c.multiplies_samples() && c.unfiltered().is_empty();
+    let is_quiet = |c: &Candidate| c.is_full() && !c.multiplies_samples() && !c.takes_samples();
     if class != Some(Class::Pebo) && !attempts.candidates.iter().any(is_quiet) {
         attempts.of_values();
     }

@@ -137,6 +137,16 @@ impl Candidate {
         self.derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x).flat_map(taken).collect()
     }
 
+    /// Tests whether a state is made of samples of an output whose rate is no equation of the observer: with its rate, it is
+    /// a state of the observer, and filtered.
+    pub(super) fn takes_samples(&self) -> bool {
+        let regression = self.derivation.regression.result.as_ref();
+        let with_rates =
+            regression.and_then(|regression| regression.outputs_with_rates(&self.plant)).unwrap_or_default();
+        let is_state = |output: &Symbol| with_rates.iter().any(|place| self.plant.y[*place].symbol == *output);
+        self.unfiltered().iter().any(|(_, output)| !is_state(output))
+    }
+
     /// Tests whether a state is a sample as it is, and samples of outputs given by value are factors of the unknowns:
     /// their noise does not average out.
     pub(super) fn multiplies_samples(&self) -> bool {
