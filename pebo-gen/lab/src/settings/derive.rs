@@ -73,6 +73,14 @@ pub(super) fn derive(
     let deviations = Deviations::of(model, plant, &known, (shown, period))?;
     let late = late((model, plant), (derivation, &formulas.regression), (kind, period), problems).ok()?;
 
+    if period.is_none()
+        && let Some(lacking) = formulas.without_period(kind, (&point, &deviations), frame.process_noise.is_some())
+    {
+        if let Some(asked) = asked {
+            problems.push(no_period(plant, lacking, asked));
+        }
+        return None;
+    }
     let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     let Coordinates { covariance, mut drift, sensed } = coordinates;
     // A guess is corrected by what the samples show; through a filter, their errors are not independent.
@@ -102,13 +110,7 @@ pub(super) fn derive(
             (Operator::Sampled(rows), covariance, [guess, noise])
         }
         ObserverKind::Filtered => {
-            let Some(period) = period else {
-                if let Some(asked) = asked {
-                    problems.push(no_period(plant, asked));
-                }
-                return None;
-            };
-            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &drift, &sensed])?, period)
+            filtered(&rows, formulas.of_unknowns(&point, [&covariance, &drift, &sensed])?, period?)
         }
     };
     let noise = if adapts { noise } else { guess.iter().zip(noise).map(|(guess, noise)| guess + noise).collect() };
@@ -309,10 +311,21 @@ fn out_of_range(span: Span) -> Diagnostic {
         .help("choose standard deviations, and units, in which numbers are nearer to 1")
 }
 
-fn no_period(plant: &Plant, (key, span): (&str, Span)) -> Diagnostic {
-    let message = format!("the filter of `{}` depends on the period of its samples", plant.name);
+/// What depends on the period of the samples.
+#[derive(Clone, Copy, Debug)]
+enum OfPeriod {
+    Filter,
+    ProcessNoise,
+}
+
+fn no_period(plant: &Plant, what: OfPeriod, (key, span): (&str, Span)) -> Diagnostic {
+    let (what, instead) = match what {
+        OfPeriod::Filter => ("filter", format!("a `filter` and gains in place of `{key}`")),
+        OfPeriod::ProcessNoise => ("process noise", "`process_noise`".to_owned()),
+    };
+    let message = format!("the {what} of `{}` depends on the period of its samples", plant.name);
     Diagnostic::error(Code::SimulationIncomplete, span, message)
-        .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write a `filter` and gains in place of `{key}`"))
+        .help(format!("say it, as `simulation: {{step: 1e-3}}`, or write {instead}"))
 }
 
 /// The point, completed with numbers for symbols that slopes do not depend on, and for z, extension and unknowns.
@@ -434,6 +447,21 @@ impl Formulas {
             needed.extend(&self.phi.formulas);
         }
         needed
+    }
+
+    /// What lacks the period of the samples, if that is not known: the noise of samples that drive the observer adds up.
+    fn without_period(
+        &self,
+        kind: ObserverKind,
+        (point, deviations): (&Point, &Deviations),
+        has_noise: bool,
+    ) -> Option<OfPeriod> {
+        if kind == ObserverKind::Filtered {
+            return Some(OfPeriod::Filter);
+        }
+        let driven = if kind == ObserverKind::Output { vec![&self.flow, &self.rates] } else { vec![&self.flow] };
+        let variances = driven.into_iter().filter_map(|slopes| slopes.variances(point, &deviations.sensors)).flatten();
+        (!has_noise && variances.into_iter().any(|variance| variance > 0.0)).then_some(OfPeriod::ProcessNoise)
     }
 
     /// Variances of the unknowns at the start, of their drift and of what sensors add, from those of theta.

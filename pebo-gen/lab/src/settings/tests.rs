@@ -311,3 +311,18 @@ fn an_extension_starts_where_the_left_inverse_has_a_value() {
     let (settings, _) = derived(&format!("{far}{gains}{scenario}"));
     assert_eq!(settings.unwrap().chi_0[0], Rational::from(6));
 }
+
+#[test]
+fn noise_of_samples_that_drive_the_observer_needs_their_period() {
+    let tank = "model: m\nx: [k]\ny: [h]\nu: [q]\nassume: [h > 0]\nf_x: {k: 0}\nf_y: {h: q - k*sqrt(h)}\nphi: [k]\n\
+                observer: {sensors: {h: 0.01}, start: {k: 1}, disturbance: {k: 0}NOISE}\n\
+                simulation: {STEPinitial: {k: 1, h: 2}, control: {q: 1}}\n";
+    let said = |noise: &str, step: &str| derived(&tank.replace("NOISE", noise).replace("STEP", step));
+    assert!(said("", "step: 0.1, ").0.is_some());
+    let (_, problems) = said("", "");
+    let message = "the process noise of `m` depends on the period of its samples";
+    assert!(problems.iter().any(|problem| &*problem.message == message && problem.help.is_some()), "{problems:?}");
+    // An output that only its own equation needs drives nothing.
+    let plain = tank.replace("q - k*sqrt(h)", "q - k").replace("NOISE", "").replace("STEP", "");
+    assert!(derived(&plain).0.is_some());
+}
