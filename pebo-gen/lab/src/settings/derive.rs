@@ -65,10 +65,9 @@ pub(super) fn derive(
         }
         return None;
     }
-    let mut chi_0 = match frame.chi_0.clone() {
-        Some(written) => written,
-        None => beginning(&known, plant, derivation).unwrap_or_else(|| vec![Rational::from(0); plant.phi.len()]),
-    };
+    let none = || vec![Rational::from(0); plant.phi.len()];
+    let begun = || beginning(&known, plant, derivation).unwrap_or_else(none);
+    let mut chi_0 = frame.chi_0.clone().unwrap_or_else(begun);
     let point = completed(&known, plant, &formulas, &chi_0)?;
     let deviations = Deviations::of(model, plant, &known, (shown, period))?;
     let late = late((model, plant), (derivation, &formulas.regression), (kind, period), problems).ok()?;
@@ -81,8 +80,8 @@ pub(super) fn derive(
         }
         return None;
     }
-    let coordinates = Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
-    let Coordinates { covariance, mut drift, sensed } = coordinates;
+    let Coordinates { covariance, mut drift, sensed } =
+        Coordinates::of(&formulas, &point, &deviations, &frame, period)?;
     // A guess is corrected by what the samples show; through a filter, their errors are not independent.
     let adapts = deviations.are_assumed && frame.process_noise.is_none() && kind != ObserverKind::Filtered;
     #[cfg(feature = "simulate")]

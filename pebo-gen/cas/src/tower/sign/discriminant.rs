@@ -10,16 +10,7 @@ impl Signs<'_, '_> {
     /// The sign of `a v^(2k) + b v^k + c` with `a` and `4 a c - b^2` of known signs, as `(x + b)^2 + 1` written out.
     pub(in crate::tower) fn by_discriminant(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         const MOST_TERMS: usize = 40;
-        const DEEPEST: u32 = 3;
-        // Each step decides the signs of polynomials in one variable less.
-        let depth = self.memory.round.depth.get();
-        if poly.term_count() > MOST_TERMS || depth == DEEPEST {
-            return Ok(None);
-        }
-        self.memory.round.depth.set(depth + 1);
-        let sign = self.as_quadratic(poly);
-        self.memory.round.depth.set(depth);
-        sign
+        if poly.term_count() > MOST_TERMS { Ok(None) } else { self.nested(|| self.as_quadratic(poly)) }
     }
 
     fn as_quadratic(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {

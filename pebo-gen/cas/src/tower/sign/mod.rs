@@ -153,6 +153,19 @@ impl Signs<'_, '_> {
         self.by_shift(&rest)
     }
 
+    /// A sign by those of other polynomials, in one variable less: none where too many of these queries are open.
+    fn nested(&self, decide: impl FnOnce() -> Result<Option<Sign>, Obstacle>) -> Result<Option<Sign>, Obstacle> {
+        const DEEPEST: u32 = 3;
+        let depth = self.memory.round.depth.get();
+        if depth == DEEPEST {
+            return Ok(None);
+        }
+        self.memory.round.depth.set(depth + 1);
+        let sign = decide();
+        self.memory.round.depth.set(depth);
+        sign
+    }
+
     /// The sign of a primitive polynomial by those of its factors.
     fn by_factors(&self, rest: &Poly) -> Result<Option<Sign>, Obstacle> {
         // Factor by factor, if there is more than one.

@@ -11,15 +11,7 @@ const MOST_TERMS: usize = 16;
 impl Signs<'_, '_> {
     /// The sign of `a + c s` with a square root s: that of `c` if `c^2 s^2 > a^2`, that of `a` if less.
     pub(in crate::tower) fn by_root(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
-        const DEEPEST: u32 = 3;
-        let depth = self.memory.round.depth.get();
-        if poly.term_count() > MOST_TERMS || depth == DEEPEST {
-            return Ok(None);
-        }
-        self.memory.round.depth.set(depth + 1);
-        let sign = self.by_squares(poly);
-        self.memory.round.depth.set(depth);
-        sign
+        if poly.term_count() > MOST_TERMS { Ok(None) } else { self.nested(|| self.by_squares(poly)) }
     }
 
     fn by_squares(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
