@@ -27,8 +27,8 @@ const CLEARLY: f64 = 7.0;
 const ROUNDING: f64 = 1e-20;
 
 impl InputRow {
-    /// The row for a plant with these samples of its signals.
-    pub(super) fn of(plant: &Plant, samples: &[(Symbol, Vec<f64>)]) -> Self {
+    /// The row for a plant with these samples of its signals, and true if they tell.
+    pub(super) fn of(plant: &Plant, samples: &[(Symbol, Vec<f64>)]) -> (Self, bool) {
         let inputs: BTreeSet<Symbol> = plant.commanded().collect();
         let of_signal = |symbol: Symbol| samples.iter().find(|(signal, _)| *signal == symbol).map(|(_, values)| values);
         let mut advantage = None;
@@ -41,8 +41,8 @@ impl InputRow {
             }
         }
         match advantage {
-            Some(advantage) if advantage <= CLEARLY => Self::Same,
-            _ => Self::Before,
+            Some(advantage) if advantage <= CLEARLY => (Self::Same, advantage < -CLEARLY),
+            _ => (Self::Before, true),
         }
     }
 }

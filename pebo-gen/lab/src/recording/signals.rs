@@ -11,7 +11,7 @@ use crate::settings::Shown;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::formula::{Formula, PI};
 use pebo_design::model::{Entry, Recording, unknown_name};
-use pebo_design::plant::{Scope, lower};
+use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
@@ -67,7 +67,7 @@ impl Signals {
 }
 
 /// The rows of which is asked what they show: enough for a median, and no long wait where they come one by one. More are
-/// asked where an output came seldom.
+/// asked where an output came seldom, or no input moved that an output has in it.
 const HEAD: [usize; 3] = [256, 1024, 4096];
 
 /// The samples of each output that are waited for: of fewer little can be said.
@@ -86,9 +86,8 @@ impl Signals {
         let signals = self.measured.iter().map(|state| plant.x[*state].symbol);
         let outputs: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let signals: Vec<Symbol> = signals.chain(outputs.iter().copied()).chain(plant.commanded()).collect();
-        let Head { times, samples, unreadable } = self.head(log, outputs.len());
-        let (count, samples) = (samples[0].len(), signals.into_iter().zip(samples));
-        let samples: Vec<(Symbol, Vec<f64>)> = samples.collect();
+        let Head { times, samples, unreadable } = self.head(plant, &signals, log);
+        let count = samples[0].1.len();
         // A state that is measured besides may be missing.
         let mut needed = samples.iter().skip(self.measured.len());
         let unknown = needed.find(|(_, values)| !values.iter().any(|value| value.is_finite()));
@@ -112,7 +111,8 @@ impl Signals {
             problems.push(found);
         }
         let period = self.period.map(|(above, below)| above / below);
-        let stands = self.period.is_none() && !times.windows(2).any(|pair| pair[1] > pair[0]);
+        let instants: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+        let stands = self.period.is_none() && !instants.windows(2).any(|pair| pair[1] > pair[0]);
         if stands && !request.model.observer.has_gains() && request.model.simulation.is_none() {
             let message = match times.len() {
                 1 => format!("{} has one row", log.name()),
@@ -124,7 +124,7 @@ impl Signals {
             ));
             return None;
         }
-        Some((Shown::by_samples((&times, period), &samples, &outputs), InputRow::of(plant, &samples)))
+        Some((Shown::by_samples((&times, period), &samples, &outputs), InputRow::of(plant, &samples).0))
     }
 
     /// A column `t` that is taken for seconds, where the row of units says another unit.
@@ -147,30 +147,32 @@ impl Signals {
         Some(Diagnostic::error(Code::RecordingMalformed, Span::NOWHERE, message).help(help))
     }
 
-    /// The first rows: as many as each output needs, if there are as many.
-    fn head(&self, log: &mut Log, outputs: usize) -> Head {
+    /// The first rows: as many as it takes, if there are as many.
+    fn head(&self, plant: &Plant, signals: &[Symbol], log: &mut Log) -> Head {
         let mut head = Head::default();
         for most in HEAD {
-            head = self.first_rows(log, most);
-            let of_outputs = head.samples.iter().skip(self.measured.len()).take(outputs);
-            let mut counts = of_outputs.map(|values| values.iter().filter(|value| value.is_finite()).count());
-            if head.samples[0].len() < most || counts.all(|count| count >= ENOUGH) {
+            head = self.first_rows(signals, log, most);
+            let of_outputs = head.samples.iter().skip(self.measured.len()).take(plant.y.len());
+            let mut counts = of_outputs.map(|(_, values)| values.iter().filter(|value| value.is_finite()).count());
+            let are_enough = counts.all(|count| count >= ENOUGH) && InputRow::of(plant, &head.samples).1;
+            if are_enough || head.samples[0].1.len() < most {
                 break;
             }
         }
         head
     }
 
-    fn first_rows(&self, log: &mut Log, most: usize) -> Head {
+    fn first_rows(&self, signals: &[Symbol], log: &mut Log, most: usize) -> Head {
         let (rows, unreadable) = log.head(&self.wanted, most).unwrap_or_default();
         let mut interpreter = Interpreter::new(&self.program);
         let mut values = vec![0.0; self.program.outputs.len()];
         let timed = usize::from(self.period.is_none());
-        let mut head = Head { samples: vec![Vec::new(); values.len() - timed], unreadable, ..Head::default() };
+        let samples = signals.iter().map(|signal| (*signal, Vec::new())).collect();
+        let mut head = Head { samples, unreadable, ..Head::default() };
         for row in &rows {
             interpreter.run(row, &mut values);
             head.times.extend(values[..timed].first());
-            head.samples.iter_mut().zip(&values[timed..]).for_each(|(samples, value)| samples.push(*value));
+            head.samples.iter_mut().zip(&values[timed..]).for_each(|((_, samples), value)| samples.push(*value));
         }
         head
     }
@@ -181,7 +183,7 @@ impl Signals {
 #[derive(Default)]
 struct Head {
     times: Vec<f64>,
-    samples: Vec<Vec<f64>>,
+    samples: Vec<(Symbol, Vec<f64>)>,
     unreadable: Option<Unreadable>,
 }
 
@@ -322,7 +324,10 @@ impl SignalResolver<'_> {
     }
 
     fn listed(&self) -> String {
-        let names = self.log.columns().iter().map(String::as_str);
-        format!("the columns of {} are {}", self.log.name(), listed(names))
+        let (name, columns) = (self.log.name(), self.log.columns());
+        match columns {
+            [one] => format!("{name} has one column, `{one}`: commas, semicolons or tabs separate columns"),
+            _ => format!("the columns of {name} are {}", listed(columns.iter().map(String::as_str))),
+        }
     }
 }

@@ -73,6 +73,13 @@ fn missing_signals_are_reported_with_the_columns() {
 }
 
 #[test]
+fn columns_that_blanks_separate_are_one() {
+    let found = said("", "t q f\n");
+    let one = "log.csv has one column, `t_q_f`: commas, semicolons or tabs separate columns";
+    assert!(found.iter().all(|said| said.contains(one)) && !found.is_empty(), "{found:?}");
+}
+
+#[test]
 fn names_that_are_no_columns_are_reported_each() {
     let found = said("recording: {t: tiem, f: force + gravity}", "time,q,force\n");
     assert_eq!(found.len(), 2, "{found:?}");

@@ -323,7 +323,8 @@ fn outputs_given_by_value_may_be_missing_too() {
 fn an_output_with_an_input_in_it_is_compared_with_the_input_of_its_own_row() {
     let cell = "model: cell\nparameters: {Q: 7200, R: 0.05}\nx: [s]\ny: [V]\nu: [I]\nf_x: {s: -I/Q}\n\
                 g_y: {V: 3 + s - R*I}\nphi: [s]\nobserver: {sensors: {V: 1e-4}, start: {s: 1}, disturbance: {s: 0}}\n";
-    let current = |k: u32| if k % 60 < 30 { 2.0 } else { 0.0 };
+    // At rest for longer than the first rows that are asked.
+    let current = |k: u32| if k > 300 && k % 60 < 30 { 2.0 } else { 0.0 };
     let table = |lag: u32| {
         let mut charge = 0.8;
         let row = |k: u32| {
@@ -332,7 +333,7 @@ fn an_output_with_an_input_in_it_is_compared_with_the_input_of_its_own_row() {
             let noise = 1e-4 * (f64::from(k * k) * 1.3).sin();
             format!("{k},{},{},{charge}\n", 3.0 + charge - 0.05 * current(k - lag) + noise, current(k))
         };
-        "t,V,I,s\n".to_owned() + &(1..300).map(row).collect::<String>()
+        "t,V,I,s\n".to_owned() + &(1..700).map(row).collect::<String>()
     };
     for lag in [0, 1] {
         let (replayed, _) = replay(cell, &table(lag)).expect("a replay");
