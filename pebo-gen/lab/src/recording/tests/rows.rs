@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::truth::simulated;
-use super::{CART, Failure, Log, faults, refusal, replay, resolve};
+use super::{CART, Failure, Log, faults, refusal, replay, resolve, without_most};
 use crate::recording::log::LONGEST;
 
 #[test]
@@ -283,20 +283,6 @@ fn rows_that_show_no_start_are_reported() {
     }
 }
 
-/// The table without most cells of a column: each tenth remains.
-fn seldom(csv: &str, name: &str) -> String {
-    let (header, rows) = csv.split_once('\n').expect("a header");
-    let place = header.split(',').position(|column| column == name).expect("a column");
-    let row = |(number, row): (usize, &str)| {
-        let mut cells: Vec<&str> = row.split(',').collect();
-        if number % 10 != 0 {
-            cells[place] = "";
-        }
-        cells.join(",")
-    };
-    std::iter::once(header.to_owned()).chain(rows.lines().enumerate().map(row)).collect::<Vec<_>>().join("\n")
-}
-
 #[test]
 fn outputs_given_by_value_may_be_missing_too() {
     // A car with a speed at each row, and a position at every tenth, or a speed with an offset.
@@ -307,7 +293,7 @@ fn outputs_given_by_value_may_be_missing_too() {
              control: {{a: 0.5*sin(t)}}}}\n"
         );
         let csv = simulated(&format!("{car}{outputs}{scenario}"), (20.0, 0.02)).csv();
-        let (replayed, _) = replay(&format!("{car}{outputs}"), &seldom(&csv, "p")).expect("a replay");
+        let (replayed, _) = replay(&format!("{car}{outputs}"), &without_most(&csv, "p")).expect("a replay");
         let text = replayed.text();
         assert!(text.contains("in part: 900 of 1001 samples lack an output") && !text.contains("refused"), "{text}");
         // What the seldom sensor scatters by is known to a third from its first 32 samples.

@@ -243,7 +243,7 @@ fn samples_that_are_off_by_far_contradict_the_numbers_and_are_said_to_stand_out(
     };
     let (clean, said) = run(0.0);
     assert!(clean.contradiction.is_none() && said.is_empty(), "{} {said:?}", clean.text());
-    // One in fifty samples, so that most of them are as expected; and beyond the range of a double's covariance.
+    // One in fifty samples, so that most of them are as expected; and so far off that later ones are not either.
     for (outlier, standing_out) in [(0.03, true), (1e100, false)] {
         let (found, said) = run(outlier);
         assert!(found.contradiction.is_some_and(|factor| factor > 3.0), "{}", found.text());
@@ -254,6 +254,20 @@ fn samples_that_are_off_by_far_contradict_the_numbers_and_are_said_to_stand_out(
             "{said:?}"
         );
     }
+}
+
+/// The level is in the rate, so that the noise of a sample is not in its row alone.
+#[test]
+fn a_sample_whose_covariance_has_no_numbers_is_judged_by_its_row() {
+    let tank = "model: tank\nx: [k]\ny: [h]\nu: [q]\nassume: [h > 0]\nf_x: {k: 0}\nf_y: {h: (q - k*sqrt(h))/2}\n\
+                phi: [k]\n";
+    let row = |k: u32| {
+        let level = if k == 150 { 1e30 } else { 4.0 + 1e-2 * (f64::from(k * k) * 0.61).cos() };
+        format!("{k},{level},0.04\n")
+    };
+    let rows = "t,h,q\n".to_owned() + &(0..300).map(row).collect::<String>();
+    let (replayed, _) = replay(tank, &rows).expect("a replay");
+    assert!(replayed.summary.contradiction.is_some_and(|factor| factor > 1e9), "{}", replayed.text());
 }
 
 #[test]
