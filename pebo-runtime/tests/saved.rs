@@ -54,7 +54,7 @@ fn feed<E: Estimator<f64, 1, 1>, R: RegressionOperator<f64, 1, 1>>(
 }
 
 /// The value read back.
-type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1>;
+type Saved<E, R> = State<f64, Integrator<f64, 1>, R, E, 1, 1>;
 
 fn continues<E, R>(estimator: &E, regression: &R)
 where

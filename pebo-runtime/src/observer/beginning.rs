@@ -59,6 +59,9 @@ where
         }
         self.state.extension = extension;
         self.state.y = Some(*y);
+        if self.feedthrough.is_some() {
+            self.state.u = Some(*u);
+        }
         self.terms = Some(terms);
         Ok(estimate)
     }

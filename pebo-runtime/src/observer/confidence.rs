@@ -94,7 +94,8 @@ where
     ) -> Result<Innovation<M::Scalar, NR>, Fault> {
         let (y, u) = (y.into().into(), u.into().into());
         check(&y, &u, dt)?;
-        let Some(before) = &self.terms else { return Ok(Innovation::nothing()) };
+        let carried = self.carried(&u);
+        let Some(before) = carried.as_ref().or(self.terms.as_ref()) else { return Ok(Innovation::nothing()) };
         let terms = self.model.terms(&self.unwrapped(&y));
         let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
         self.innovation_of(&outcome, dt)
@@ -171,7 +172,8 @@ where
     {
         let (y, u): (SVector<M::Scalar, NY>, SVector<M::Scalar, NU>) = (y.into().into(), u.into().into());
         check_rows(&y, rows)?;
-        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
+        let carried = self.carried(&u);
+        let (Some(before), Some(last)) = (carried.as_ref().or(self.terms.as_ref()), &self.state.y) else {
             check(&y, &u, dt)?;
             return Ok(Innovation::nothing());
         };
@@ -188,14 +190,15 @@ where
         u: &SVector<M::Scalar, NU>,
         dt: M::Scalar,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
-        let (Some(before), Some(last)) = (&self.terms, &self.state.y) else {
+        let carried = self.carried(u);
+        let (Some(before), Some(last)) = (carried.as_ref().or(self.terms.as_ref()), &self.state.y) else {
             check(&y, u, dt)?;
             return self.advance(&y, [u, u], dt);
         };
         let (y, left_out) = self.completed((before, last), y, (rows, is_expected), u, dt)?;
         let terms = self.model.terms(&y);
-        if let Some((trigger, step)) = self.rebasing {
-            return step(self, trigger, terms, &Taken { y: &y, u: [u, u], dt, left_out, without: Rows::without });
+        if let Some(rebasing) = self.rebasing {
+            return self.advance_by(rebasing, terms, &Taken { y: &y, u: [u, u], dt, left_out, without: Rows::without });
         }
         let (extension, regression) = self.propagate([before, &terms], [u, u], dt)?;
         self.finish((extension, regression.without(&left_out)), terms, &y, dt)

@@ -105,7 +105,7 @@ where
     }
 
     /// A step without re-basing.
-    fn step_corrected(
+    pub(super) fn step_corrected(
         &mut self,
         _: Trigger<M::Scalar>,
         terms: M::Terms,

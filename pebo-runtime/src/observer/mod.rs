@@ -4,6 +4,7 @@ mod beginning;
 mod confidence;
 mod constrained;
 mod errors_in_variables;
+mod feedthrough;
 mod late;
 mod rebasing;
 
@@ -17,6 +18,7 @@ use crate::{
 };
 pub use confidence::Innovation;
 use errors_in_variables::{Correction, Led, Taken};
+use feedthrough::Feedthrough;
 pub use late::{Late, LateObserver};
 use rebasing::Rebasing;
 
@@ -75,7 +77,7 @@ pub struct Observer<
     R: RegressionOperator<M::Scalar, NR, NE>,
 {
     model: M,
-    state: State<M::Scalar, M::Extension, R, E, NY>,
+    state: State<M::Scalar, M::Extension, R, E, NY, NU>,
     /// The terms of the last accepted sample; there if and only if that sample is.
     terms: Option<M::Terms>,
     /// The step that is re-based or corrected, with its trigger. It is compiled only where either is asked for, and the step
@@ -83,6 +85,8 @@ pub struct Observer<
     rebasing: Option<Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>>,
     /// The standard deviations of the sensors and the correction by them, where their noise is in the factor too.
     correction: Option<Correction<Self, M, E, R, NX, NY, NU, NZ, NR, NE>>,
+    /// The outputs that hold the input and drive the cascade, where there are some.
+    feedthrough: Option<Feedthrough<Self, M, NX, NY, NU, NZ, NR, NE>>,
     /// True while a sample is taken whether or not the state then has a value.
     is_learning: bool,
 }
@@ -90,9 +94,11 @@ pub struct Observer<
 /// Everything that a step of an [`Observer`] changes, gains and filter included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct State<S: Real, X, R, E, const NY: usize> {
+pub struct State<S: Real, X, R, E, const NY: usize, const NU: usize> {
     /// The last accepted sample.
     y: Option<SVector<S, NY>>,
+    /// The input at its instant, where an output holds it that drives the cascade.
+    u: Option<SVector<S, NU>>,
     extension: X,
     regression: R,
     estimator: E,
@@ -142,8 +148,8 @@ where
             return Err(Fault::Start);
         }
         let extension = M::Extension::new(chi_0);
-        let state = State { y: None, extension, regression, estimator, since: 0 };
-        Ok(Self { model, state, terms: None, rebasing: None, correction: None, is_learning: false })
+        let state = State { y: None, u: None, extension, regression, estimator, since: 0 };
+        Ok(Self { model, state, terms: None, rebasing: None, correction: None, feedthrough: None, is_learning: false })
     }
 
     /// Takes the output `y` at the end of an interval of `dt` seconds during which the input was held at `u`, and
@@ -192,6 +198,7 @@ where
             return Err(Fault::Start);
         }
         self.state.y = None;
+        self.state.u = None;
         self.terms = None;
         self.state.extension = M::Extension::new(chi_0);
         self.state.regression.reset();
@@ -201,7 +208,7 @@ where
     }
 
     /// Everything that a step changes, to be saved; with the feature `serde` it can be written and read.
-    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY> {
+    pub fn state(&self) -> &State<M::Scalar, M::Extension, R, E, NY, NU> {
         &self.state
     }
 
@@ -211,8 +218,9 @@ where
     /// # Errors
     /// [`Fault::State`] if the state is not finite; the observer is then exactly as before. Other damage is for a
     /// checksum to find.
-    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY>) -> Result<(), Fault> {
-        if !state.is_finite() || state.y.as_ref().is_some_and(|y| !all_finite(y)) {
+    pub fn restore(&mut self, state: State<M::Scalar, M::Extension, R, E, NY, NU>) -> Result<(), Fault> {
+        let is_sample = state.y.as_ref().is_none_or(all_finite) && state.u.as_ref().is_none_or(all_finite);
+        if !state.is_finite() || !is_sample {
             return Err(Fault::State);
         }
         self.terms = state.y.as_ref().map(|y| self.model.terms(y));
@@ -252,6 +260,12 @@ where
     /// The terms of the last accepted output; none before the first sample.
     pub fn terms(&self) -> Option<&M::Terms> {
         self.terms.as_ref()
+    }
+
+    /// The terms from which an interval with this input begins: those of the last accepted output, just after the input has
+    /// jumped, see [`with_feedthrough`](Self::with_feedthrough); none before the first sample.
+    pub fn terms_with(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
+        self.carried(u).or(self.terms)
     }
 
     /// The dynamic extension.
@@ -295,13 +309,27 @@ where
             return self.begin(terms, y, u[1], dt);
         };
         // Handed over as copies, so that all may stay in registers where there is no re-basing.
-        if let Some((trigger, step)) = self.rebasing {
+        if let Some(rebasing) = self.rebasing {
             let (y, [u_before, u_after]) = (*y, [*u[0], *u[1]]);
             let u = [&u_before, &u_after];
-            return step(self, trigger, terms, &Taken::whole(&y, u, dt));
+            return self.advance_by(rebasing, terms, &Taken::whole(&y, u, dt));
         }
         let (extension, regression) = self.propagate([before, &terms], u, dt)?;
         self.finish((extension, regression), terms, y, dt)
+    }
+
+    /// Takes a sample by the step that is re-based or corrected.
+    fn advance_by(
+        &mut self,
+        (trigger, step): Rebasing<Self, M, R, NX, NY, NU, NZ, NR, NE>,
+        terms: M::Terms,
+        sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
+    ) -> Result<SVector<M::Scalar, NX>, Fault> {
+        let estimate = step(self, trigger, terms, sample)?;
+        if self.feedthrough.is_some() {
+            self.state.u = Some(*sample.u[1]);
+        }
+        Ok(estimate)
     }
 
     /// The end of a step that is neither re-based nor corrected, from extension and regression at the end of the interval.
@@ -422,7 +450,7 @@ where
     /// Keeps a moved state if all of it and its estimate are finite.
     fn keep(
         &mut self,
-        mut moved: State<M::Scalar, M::Extension, R, E, NY>,
+        mut moved: StateOf<M, E, R, NX, NY, NU, NZ, NR, NE>,
         terms: M::Terms,
         y: &SVector<M::Scalar, NY>,
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
@@ -495,9 +523,17 @@ where
         terms: &M::Terms,
         &Taken { u, dt, ref left_out, without, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<(M::Extension, R::Step), Fault> {
-        let before = self.terms.as_ref().ok_or(Fault::State)?;
+        let carried = self.carried(u[0]);
+        let before = carried.as_ref().or(self.terms.as_ref()).ok_or(Fault::State)?;
         let (extension, regression) = self.propagate([before, terms], u, dt)?;
         Ok((extension, without(regression, left_out)))
+    }
+
+    /// The terms from which an interval with this input begins, where they are not those of the last sample.
+    #[inline]
+    fn carried(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
+        let (outputs, after_jump) = self.feedthrough.as_ref()?;
+        after_jump(self, outputs, u)
     }
 
     /// The estimate of the state that goes with an output.
@@ -524,7 +560,7 @@ pub(crate) type StateOf<
     const NZ: usize,
     const NR: usize,
     const NE: usize,
-> = State<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, <M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, R, E, NY>;
+> = State<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, <M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, R, E, NY, NU>;
 
 /// The state after an interval, before it is accepted.
 struct Next<X, R, E> {
@@ -533,7 +569,7 @@ struct Next<X, R, E> {
     estimator: E,
 }
 
-impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
+impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, NU> {
     /// True if every number of the state is finite.
     fn is_finite<const NZ: usize, const NR: usize, const NE: usize>(&self) -> bool
     where

@@ -161,7 +161,7 @@ where
             }
             return Ok(estimate);
         }
-        self.step_drifting(Trigger::Drift(drift), terms, &Taken::whole(y, [u, u], dt))
+        self.advance_by((Trigger::Drift(drift), Self::step_drifting), terms, &Taken::whole(y, [u, u], dt))
     }
 
     /// Takes the state after a sample, and moves a shift where the form asks for one.
@@ -205,8 +205,8 @@ where
     ) -> Result<SVector<M::Scalar, NX>, Fault> {
         let Trigger::Samples(every) = trigger else { return Err(Fault::Gain) };
         // What can be copied as one block is.
-        let State { y, extension, ref regression, ref estimator, since } = self.state;
-        let before = State { y, extension, regression: regression.clone(), estimator: estimator.clone(), since };
+        let State { y, u, extension, ref regression, ref estimator, since } = self.state;
+        let before = State { y, u, extension, regression: regression.clone(), estimator: estimator.clone(), since };
         match self.rebased(every, &terms, sample) {
             Ok(estimate) => {
                 self.state.y = Some(*sample.y);
@@ -257,7 +257,8 @@ where
         terms: &M::Terms,
         &Taken { u: [u_before, u_after], dt, ref left_out, without, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<(), Fault> {
-        let before = self.terms.as_ref().ok_or(Fault::State)?;
+        let carried = self.carried(u_before);
+        let before = carried.as_ref().or(self.terms.as_ref()).ok_or(Fault::State)?;
         let estimate = self.state.estimator.estimate();
         let z = self.state.extension.coordinates(&estimate);
         let [start, end] = self.flows([before, terms], [u_before, u_after], &z, dt);
@@ -301,7 +302,7 @@ where
     }
 }
 
-impl<S: Real, X, R, E, const NY: usize> State<S, X, R, E, NY> {
+impl<S: Real, X, R, E, const NY: usize, const NU: usize> State<S, X, R, E, NY, NU> {
     /// Moves a shift from the extension into the unknown.
     fn shift<const NZ: usize, const NR: usize>(&mut self, shift: &SVector<S, NZ>)
     where

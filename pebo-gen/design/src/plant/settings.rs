@@ -19,6 +19,9 @@ pub struct Settings<N> {
     pub expected: Option<Vec<usize>>,
     /// The standard deviations of the outputs' sensors, where their noise is in the factor of the unknown too.
     pub errors_in_variables: Option<Vec<N>>,
+    /// For each row the index of the output that it gives by its value with an input in it, where that output drives the
+    /// cascade too; none where no output does.
+    pub feedthrough: Option<Vec<Option<usize>>>,
     /// The outputs that arrive late, if any does.
     pub late: Option<Late<N>>,
     /// True if samples are joined by straight lines; else each is held.
@@ -262,6 +265,7 @@ impl<N: Clone + PartialOrd> Settings<N> {
             output: false,
             expected: None,
             errors_in_variables: None,
+            feedthrough: None,
             late: None,
             straight: written.hold.as_ref().is_none_or(|hold| hold.value == Hold::FirstOrder),
             estimator: estimator?,

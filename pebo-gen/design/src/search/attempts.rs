@@ -55,7 +55,7 @@ pub(super) fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> A
         others.run(class);
         attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
-    let is_quiet = |c: &Candidate| c.is_full() && !c.multiplies_samples() && !c.takes_samples();
+    let is_quiet = |c: &Candidate| c.is_full() && c.is_everywhere() && !c.multiplies_samples() && !c.takes_samples();
     if class != Some(Class::Pebo) && !attempts.candidates.iter().any(is_quiet) {
         attempts.of_values();
     }
@@ -368,8 +368,14 @@ impl Attempts<'_> {
         let cleared: Vec<Expr> = values.iter().map(|value| functions::without_roots(problem, *value)).collect();
         let states = problem.x.iter().map(|x| problem.arena.of_symbol(*x));
         let both: Vec<Expr> = cleared.iter().copied().chain(states).collect();
-        for (start, formulas) in [(Start::Values, &values), (Start::Values, &cleared), (Start::ValuesAndStates, &both)]
-        {
+        let rates: Vec<Expr> = cleared.iter().copied().chain(problem.output_rates()).collect();
+        let starts = [
+            (Start::Values, &values),
+            (Start::Values, &cleared),
+            (Start::ValuesAndStates, &both),
+            (Start::ValuesAndRates, &rates),
+        ];
+        for (start, formulas) in starts {
             if self.is_over() {
                 return;
             }

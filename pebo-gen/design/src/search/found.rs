@@ -96,6 +96,8 @@ pub enum Start {
     Values,
     /// The same with the states.
     ValuesAndStates,
+    /// The same with the outputs' rates.
+    ValuesAndRates,
     /// The states divided by a polynomial that divides its own rate.
     Quotients,
     /// The outputs' rates, where unknown constants are taken for known.

@@ -58,6 +58,9 @@ impl Start {
             Self::ValuesAndStates => {
                 "the functions in the identities and the states, which outputs show in their rates"
             }
+            Self::ValuesAndRates => {
+                "the functions in the identities and in the outputs' rates, which outputs show in their rates"
+            }
             Self::States => "the states",
             Self::Quotients => "the states divided by a polynomial that divides its own rate",
             Self::Constants => "the outputs' rates, in a cascade in which the unknown constants are known",

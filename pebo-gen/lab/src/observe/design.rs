@@ -229,7 +229,6 @@ impl Design {
     }
 }
 
-/// The wanted standard errors of the recovered states; one of another state is reported.
 /// The index in y of the output of each row, where the observer expects any of them by its row, or waits for it.
 fn partial(plant: &Plant, regression: &Regression, settings: &Settings) -> Option<Vec<usize>> {
     if !matches!(settings.operator, Operator::Sampled(_)) {
@@ -243,6 +242,7 @@ fn partial(plant: &Plant, regression: &Regression, settings: &Settings) -> Optio
     may_lack.then_some(rows)
 }
 
+/// The wanted standard errors of the recovered states; one of another state is reported.
 fn wanted(request: &Request, inverse: &LeftInverse, problems: &mut Diagnostics) -> Vec<Wanted> {
     let arena = &request.plant.arena;
     let mut found = Vec::new();

@@ -212,6 +212,15 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
             Some(sensors) => observer.with_errors_in_variables(&pad(sensors))?,
             None => observer,
         };
+        // With the inputs of an instant beside those of an interval, a sample holds the input that comes after it.
+        let observer = match &settings.feedthrough {
+            Some(outputs) if !design.with_instant => {
+                let mut padded = [None; N];
+                padded.iter_mut().zip(outputs).for_each(|(padded, output)| *padded = *output);
+                observer.with_feedthrough(padded)?
+            }
+            _ => observer,
+        };
         let rows = design.partial.as_ref().map(|outputs| {
             let mut rows = [usize::MAX; N];
             rows.iter_mut().zip(outputs).for_each(|(row, output)| *row = *output);
@@ -359,7 +368,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
             gate.admit(&self.observer.innovation(y, parted, u, dt)?)?;
         }
         let estimate = if self.uncertainty.is_some() {
-            let before = self.observer.now().terms().map(|before| (*before, self.independent_now()));
+            let before = self.observer.now().terms_with(&pad(u)).map(|before| (before, self.independent_now()));
             let estimate = self.observer.step(y, parted, u, dt)?;
             self.follow(before, y, u, dt);
             estimate
@@ -401,11 +410,12 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         if self.is_pending(&innovation) {
             return None;
         }
-        let with_noise_elsewhere = self.uncertainty.as_ref().zip(now.terms()).and_then(|(uncertainty, before)| {
-            let (after, u) = (&pad(y), &pad(u));
-            let interval = Interval { before, after, u, dt, z: self.independent_now() };
-            uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)
-        });
+        let with_noise_elsewhere =
+            self.uncertainty.as_ref().zip(now.terms_with(&pad(u))).and_then(|(uncertainty, before)| {
+                let (after, u) = (&pad(y), &pad(u));
+                let interval = Interval { before: &before, after, u, dt, z: self.independent_now() };
+                uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)
+            });
         // A sample so far off that its covariance is beyond a double's range stands out by its row alone.
         let own = Surprise { square: innovation.normalised_square, determinant: innovation.determinant };
         let Surprise { square, determinant } = with_noise_elsewhere.unwrap_or(own);

@@ -23,6 +23,8 @@ pub(crate) struct Settings {
     pub(crate) expected: Option<Vec<usize>>,
     /// The standard deviations of the sensors, where their noise is in the factor of the unknown too.
     pub(crate) errors_in_variables: Option<Vec<f64>>,
+    /// For each row the output that it gives by its value with an input in it, where that drives the cascade too.
+    pub(crate) feedthrough: Option<Vec<Option<usize>>>,
     /// The outputs that arrive late, if any does.
     pub(crate) late: Option<settings::Late<f64>>,
     /// The hold between samples.
@@ -128,6 +130,7 @@ impl Settings {
             output: resolved.output,
             expected: resolved.expected,
             errors_in_variables: resolved.errors_in_variables,
+            feedthrough: resolved.feedthrough,
             late: resolved.late,
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
@@ -185,6 +188,7 @@ impl Settings {
             output: settings.output,
             expected: settings.expected,
             errors_in_variables: settings.errors_in_variables.as_deref().map(all),
+            feedthrough: settings.feedthrough,
             late: settings.late.as_ref().map(|late| late.map(Rational::to_f64)),
             hold: if settings.straight { Hold::First } else { Hold::Zero },
             rebase: match &settings.rebase {

@@ -17,6 +17,7 @@ use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::derived::DerivedSettings;
 use super::digits::rounded;
+use super::feedthrough::feedthrough;
 use super::kind::ObserverKind;
 use super::late::late;
 use super::magnitude::Deviations;
@@ -126,6 +127,7 @@ pub(super) fn derive(
         output: kind == ObserverKind::Output,
         expected: if kind == ObserverKind::Output { expected(plant, derivation) } else { None },
         errors_in_variables: formulas.errors_in_variables(plant, kind, &deviations.sensors),
+        feedthrough: feedthrough(plant, derivation, (&formulas.regression, kind), late.as_ref()),
         late: late.clone(),
         straight: frame.straight,
         estimator: if adapts {

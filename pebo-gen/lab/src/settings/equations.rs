@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Regression, RegressionKind};
+use pebo_design::analysis::{Derivation, Regression, RegressionKind};
 use pebo_design::plant::Plant;
 
 use super::kind::ObserverKind;
@@ -35,8 +35,10 @@ pub(super) struct Equations {
     samples: Vec<Equation>,
     /// The outputs that each is made of.
     sources: Vec<Vec<usize>>,
-    /// The rates of outputs that are states of the observer.
-    pub(super) rates: Vec<Expr>,
+    /// The rows of outputs that are states of the observer.
+    states: usize,
+    /// The rates of these outputs.
+    rates: Vec<Expr>,
 }
 
 struct Equation {
@@ -85,19 +87,55 @@ impl Equations {
         Self {
             samples: (0..regression.phi_0.len()).map(row).collect(),
             sources: regression.sources.clone(),
+            states: rates,
             rates: of_rates.flat_map(|(known, factors)| std::iter::once(known).chain(factors)).copied().collect(),
         }
     }
 
+    /// True if the rates of the observer depend on an output: those of the cascade and of outputs that are its states.
+    pub(super) fn drive(&self, plant: &Plant, derivation: &Derivation, output: Symbol) -> bool {
+        let own = BTreeSet::from([output]);
+        let cascade = derivation.cascade.result.iter();
+        let flow = cascade.flat_map(|cascade| cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()));
+        flow.chain(&self.rates).any(|rate| plant.arena.depends_on(*rate, &own))
+    }
+
+    /// For each row the output that it gives by its value with an input in it.
+    pub(super) fn with_inputs(
+        &self,
+        plant: &Plant,
+        SampleRows { rows, is_expected }: &SampleRows,
+    ) -> Vec<Option<usize>> {
+        let inputs = plant.u.iter().copied().collect();
+        let holds = |formula: &Expr| plant.arena.depends_on(*formula, &inputs);
+        let output = |(row, equation): (usize, &Equation)| {
+            let output = rows[row];
+            // By its value a row says what an output is, by the first of its rows; the rate of an output holds no input.
+            let is_its_own = is_expected[output] && rows.iter().position(|other| *other == output) == Some(row);
+            let is_held = holds(&equation.known) || equation.factors.iter().any(holds);
+            (is_its_own && is_held).then_some(output)
+        };
+        self.samples.iter().enumerate().map(output).collect()
+    }
+
     /// The rows that lack something without each output, of outputs with these delays.
     pub(super) fn rows(&self, plant: &Plant, delays: &[Rational]) -> SampleRows {
-        let row = |(equation, sources): (&Equation, &Vec<usize>)| {
+        let mut rows: Vec<usize> = Vec::new();
+        for (equation, sources) in self.samples.iter().zip(&self.sources) {
             // Without the latest of its outputs an equation says nothing yet.
-            let own = (0..plant.y.len()).filter(|output| equation.has(plant, plant.y[*output].symbol));
-            let latest = own.reduce(|late, output| if delays[output] > delays[late] { output } else { late });
-            latest.or(sources.first().copied()).unwrap_or(0)
-        };
-        let rows: Vec<usize> = self.samples.iter().zip(&self.sources).map(row).collect();
+            let own = || (0..plant.y.len()).filter(|output| equation.has(plant, plant.y[*output].symbol));
+            let latest = own().reduce(|late, output| if delays[output] > delays[late] { output } else { late });
+            // Beside outputs that are states of the observer an equation lacks nothing but the one that it says: what is
+            // expected of the others stands in for them, and the observer knows how well.
+            let of_states = &rows[..self.states.min(rows.len())];
+            let mut others = own().filter(|output| !of_states.contains(output));
+            let said = others.next().filter(|output| {
+                others.next().is_none()
+                    && equation.expects(plant, plant.y[*output].symbol)
+                    && latest.is_some_and(|latest| delays[latest] <= delays[*output])
+            });
+            rows.push(said.or(latest).or(sources.first().copied()).unwrap_or(0));
+        }
         // By the same row as in a run: the first that waits for the output.
         let expects = |output: usize| {
             let row = rows.iter().position(|row| *row == output);

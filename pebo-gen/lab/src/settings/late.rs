@@ -71,8 +71,6 @@ pub(super) fn late(
 /// True if the observer computes with an output besides its own equations.
 fn is_needed(plant: &Plant, derivation: &Derivation, equations: &Equations, output: Symbol) -> bool {
     let own = BTreeSet::from([output]);
-    let cascade = derivation.cascade.result.iter();
-    let flow = cascade.flat_map(|cascade| cascade.h.iter().chain(cascade.lambda.iter().flatten().flatten()));
-    let inverse = derivation.left_inverse.result.iter().flat_map(|inverse| inverse.x.iter().map(|(_, state)| state));
-    flow.chain(&equations.rates).chain(inverse).any(|formula| plant.arena.depends_on(*formula, &own))
+    let mut inverse = derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x);
+    equations.drive(plant, derivation, output) || inverse.any(|(_, state)| plant.arena.depends_on(*state, &own))
 }

@@ -20,6 +20,7 @@ mod words;
 mod derive;
 mod digits;
 mod equations;
+mod feedthrough;
 mod kind;
 mod late;
 mod magnitude;

@@ -8,6 +8,7 @@ use pebo_design::plant::settings::{Covariance, Estimator, Late, Operator, Rebase
 use pebo_design::source::{Diagnostic, Diagnostics, Source};
 
 use super::DerivedSettings;
+use super::equations::SampleRows;
 
 const CUK: &str = "
 model: cuk
@@ -24,6 +25,13 @@ phi: [2*i1, i3]
 const KNOWN: &str = "observer: {sensors: {v2: 0.1, v4: 0.2}, start: {i1: 5, i3: 3}, disturbance: {i1: 1}}\n";
 
 const SCENARIO: &str = "simulation: {step: 1e-5, initial: {i1: 0.5, i3: -1, v2: 10, v4: -12}, control: {d: 0.5}}\n";
+
+/// The plant of a model that is accepted, with its derivation.
+fn accepted(text: &str) -> (Plant, Derivation) {
+    let plant = Plant::resolve(&Model::parse(&Source::new("test", text).unwrap()).unwrap()).unwrap();
+    let derivation = Derivation::derive(&plant);
+    (plant, derivation)
+}
 
 fn derived(text: &str) -> (Option<Settings<Rational>>, Vec<Diagnostic>) {
     let model = match Source::new("test", text).map_err(|found| vec![found]).and_then(|source| Model::parse(&source)) {
@@ -252,6 +260,30 @@ fn a_late_output_that_drives_the_observer_has_an_equation_of_its_own() {
     // With a drift along it the observer needs the bearing of now.
     let problems = late(&bearing.replace("p: -v", "p: -v*cos(b)")).unwrap_err();
     assert!(problems[0].message.contains("`b` cannot be late: the observer needs it"), "{problems:?}");
+}
+
+/// A car whose lateral acceleration has the steering angle in it.
+const CAR: &str = "model: m\nx: [c, p]\ny: [r, a]\nu: [d]\nf_x: {c: 0, p: a*c}\nf_y: {r: 2*c*d - p - r}\n\
+                   g_y: {a: c*d + p - r}\nphi: [c, p]\n\
+                   observer: {sensors: {r: 0.1, a: 0.1}, start: {c: 1, p: 1}}\n\
+                   simulation: {step: 0.1, initial: {c: 1, p: 0, r: 0}, control: {d: sin(t)}}\n";
+
+#[test]
+fn an_output_with_an_input_in_it_that_drives_the_cascade_jumps_with_it() {
+    let found = |text: &str| derived(text).0.unwrap().feedthrough;
+    assert_eq!(found(CAR), Some(vec![None, Some(1)]));
+    let without = |text: &str| assert_eq!(found(text), None, "{text}");
+    without(&CAR.replace("p: a*c", "p: r*c"));
+    without(&CAR.replace("a: c*d + p", "a: c + p"));
+}
+
+#[test]
+fn an_output_given_by_its_value_beside_one_with_a_rate_may_be_missing() {
+    let (plant, derivation) = accepted(CAR);
+    let regression = derivation.regression.result.as_ref().unwrap();
+    // The second row has both outputs in it: without the speed it has what is expected of the speed.
+    let rows = SampleRows::of(&plant, regression, true);
+    assert_eq!(rows, SampleRows { rows: vec![0, 1], is_expected: vec![true; 2] });
 }
 
 #[test]

@@ -234,6 +234,17 @@ impl Module<'_> {
             }
             None => (None, built),
         };
+        let (jumps, built) = match &settings.feedthrough {
+            Some(outputs) => {
+                let place = |output: &usize| proc_macro2::Literal::usize_unsuffixed(*output);
+                let outputs = outputs.iter().map(|output| match output.as_ref().map(place) {
+                    Some(output) => quote!(Some(#output)),
+                    None => quote!(None),
+                });
+                (Some(quote!(let observer = #built?;)), quote!(observer.with_feedthrough([#(#outputs),*])))
+            }
+            None => (None, built),
+        };
         let rebased = settings.rebase.as_ref().map(|rebase| match rebase {
             Rebase::Samples(samples) => {
                 let samples = syn::LitInt::new(&samples.to_string(), proc_macro2::Span::call_site());
@@ -256,7 +267,7 @@ impl Module<'_> {
             Some(late) => late_observer(late, &built, &mut one),
             None => built,
         };
-        let last = quote!(#regression #chi_0 #sensors #plain #built);
+        let last = quote!(#regression #chi_0 #sensors #jumps #plain #built);
         let (model, errors) = if self.asked.is_empty() {
             (quote!(Self::new(parameters)), "A fault only where rounding moves a setting out of its range.")
         } else {

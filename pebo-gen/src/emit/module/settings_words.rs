@@ -74,6 +74,11 @@ impl Module<'_> {
         parts.extend(settings.errors_in_variables.as_ref().map(|sensors| {
             format!("each linearised at its likely outputs, with sensors of standard deviation {}", list(sensors))
         }));
+        parts.extend(settings.feedthrough.as_ref().map(|outputs| {
+            let name = |output: &usize| format!("`{}`", self.plant.arena.name(self.plant.y[*output].symbol));
+            let each: Vec<String> = outputs.iter().flatten().map(name).collect();
+            format!("after a jump of an input {} as it is expected", each.join(", "))
+        }));
         parts.extend(settings.output.then(|| "output form".to_owned()));
         if !matches!(settings.operator, Operator::Sampled(_)) {
             parts.push(format!("{}-order hold", if settings.straight { "first" } else { "zero" }));

@@ -48,6 +48,8 @@ enum Made {
     Model(Form, [Option<Vec<Rational>>; 2]),
     /// The indices of the outputs of the rows.
     Rows(Vec<usize>),
+    /// The index of an output for each row, or none.
+    Outputs(Vec<Option<usize>>),
     Number(Rational),
     List(Vec<Rational>),
     /// A vector of infinities, above or below all numbers.
@@ -163,6 +165,7 @@ impl Reader<'_> {
             Syntax::Struct(given) if given.path.is_ident("Late") => {
                 self.late(given).map(Made::Late).ok_or_else(unknown)
             }
+            Syntax::Array(array) => outputs(array).map(Made::Outputs).ok_or_else(unknown),
             // A number of samples; numbers of the scalar have a point.
             Syntax::Lit(syn::ExprLit { lit: syn::Lit::Int(samples), .. }) => {
                 Rational::from_decimal(samples.base10_digits()).map(Made::Number).map_err(|_| unknown())
@@ -337,6 +340,7 @@ impl Reader<'_> {
                     output,
                     expected,
                     errors_in_variables: None,
+                    feedthrough: None,
                     late: None,
                     straight,
                     estimator,
@@ -364,6 +368,9 @@ fn method(name: &str, receiver: Made, arguments: Vec<Made>) -> Option<Made> {
         }
         ("with_errors_in_variables", Made::Observer(settings), Some(Made::List(sensors)), None) => {
             Made::Observer(Box::new(Settings { errors_in_variables: Some(sensors), ..*settings }))
+        }
+        ("with_feedthrough", Made::Observer(settings), Some(Made::Outputs(outputs)), None) => {
+            Made::Observer(Box::new(Settings { feedthrough: Some(outputs), ..*settings }))
         }
         ("rebasing", Made::Observer(settings), Some(Made::Number(samples)), None) => {
             Made::Observer(Box::new(Settings { rebase: Some(Rebase::Samples(samples)), ..*settings }))
@@ -407,6 +414,15 @@ fn bound(made: Made, side: bool) -> Result<Option<Vec<Rational>>, ()> {
         Made::Infinite { above } if above == side => Ok(None),
         _ => Err(()),
     }
+}
+
+/// The indices of an array of which some may be none.
+fn outputs(array: &syn::ExprArray) -> Option<Vec<Option<usize>>> {
+    let output = |entry: &Syntax| match compact(entry).as_str() {
+        "None" => Some(None),
+        entry => entry.strip_prefix("Some(")?.strip_suffix(')')?.parse().ok().map(Some),
+    };
+    array.elems.iter().map(output).collect()
 }
 
 /// The numbers of an array of indices.

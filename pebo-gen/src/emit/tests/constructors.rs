@@ -19,6 +19,7 @@ fn settings(estimator: Estimator<Rational>) -> Settings<Rational> {
         output: false,
         expected: None,
         errors_in_variables: None,
+        feedthrough: None,
         late: None,
         straight: true,
         estimator,
@@ -189,6 +190,21 @@ fn noise_in_the_factor_has_the_deviations_of_the_sensors() {
     let found = statements(&text);
     assert_eq!(found[found.len() - 4..], expected);
     refuse_changed(&given, &[("[0.1, 0.2]", "[0.1, 0.3]"), (".with_errors_in_variables(&sensors)?", "")]);
+}
+
+#[test]
+fn outputs_that_jump_with_an_input_are_named_by_their_rows() {
+    let given = Settings { feedthrough: Some(vec![None, Some(1)]), ..output_form() };
+    let text = tuned(&given);
+    assert!(text.contains("after a jump of an input"), "{text}");
+    let expected = [
+        "let observer = Tuned::with_regression(model, estimator, sampled, chi_0)?;",
+        "let observer = observer.with_feedthrough([None, Some(1)])?;",
+        "observer.rebasing(1)",
+    ];
+    let found = statements(&text);
+    assert_eq!(found[found.len() - 3..], expected);
+    refuse_changed(&given, &[("[None, Some(1)]", "[Some(1), None]"), (".with_feedthrough([None, Some(1)])?", "")]);
 }
 
 #[test]

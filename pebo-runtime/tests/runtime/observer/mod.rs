@@ -4,6 +4,7 @@ mod angle;
 mod drift;
 mod errors_in_variables;
 mod expected;
+mod feedthrough;
 mod functions;
 mod kinds;
 mod late;
