@@ -33,7 +33,7 @@ use crate::settings::words::KnownNumbers;
 /// The default bandwidth of a filter, times the period of the samples: ten of them to a time constant.
 pub(crate) const BANDWIDTH: f64 = 0.1;
 
-/// The least variance at the start, as a share of the largest: zero would be no covariance.
+/// The variance at the start of what is known exactly, as a share of the least of the others: zero would be no covariance.
 const CERTAIN: f64 = 1e-12;
 
 /// The points on the period of an angle at which slopes are taken: of sines and cosines, and their squares, the mean of so
@@ -518,8 +518,9 @@ fn exact(operator: &Operator<f64>, [covariance, noise, guess]: [&[f64]; 3]) -> O
         Operator::Window(samples) => Operator::Window(rounded(*samples)?),
         Operator::Sampled(deviations) => Operator::Sampled(all(deviations)?),
     };
-    let largest = covariance.iter().copied().fold(0.0, f64::max);
-    let least = if largest > 0.0 { CERTAIN * largest } else { CERTAIN };
-    let covariance: Vec<f64> = covariance.iter().map(|variance| variance.max(least)).collect();
+    // Units set variances apart by any factor: each that is there stays as it is.
+    let least = covariance.iter().copied().filter(|variance| *variance > 0.0).reduce(f64::min).unwrap_or(1.0);
+    let known = |variance: &f64| if *variance > 0.0 { *variance } else { CERTAIN * least };
+    let covariance: Vec<f64> = covariance.iter().map(known).collect();
     Some((operator, [all(&covariance)?, all(noise)?, all(guess)?]))
 }
