@@ -13,9 +13,6 @@ use crate::numeric::sum::{all_finite, blemish};
 use crate::regression::{Outcome as _, Sides};
 use crate::{Estimator, Fault, Model, Real, RegressionOperator};
 
-/// The share of a period in which nothing drifts, as there is no interval before the first sample.
-const AN_INSTANT: f64 = 1e-9;
-
 impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
     Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
 where
@@ -23,6 +20,9 @@ where
     E: Estimator<M::Scalar, NR, NE>,
     R: RegressionOperator<M::Scalar, NR, NE>,
 {
+    /// The share of a period that the first sample stands for: there is no interval before it, and nothing drifts.
+    pub const INSTANT: f64 = 1e-9;
+
     /// Takes the first sample, which has no interval behind it.
     pub(super) fn begin(
         &mut self,
@@ -82,7 +82,7 @@ where
         let mut sides = self.model.regression(extension, terms, sample.u[1]);
         sides.leave_out(&left_out);
         // A sample by itself has the same weight after any time, in which the unknown drifts.
-        let sample = Taken { left_out, dt: sample.dt * Real::from_f64(AN_INSTANT), ..*sample };
+        let sample = Taken { left_out, dt: sample.dt * Real::from_f64(Self::INSTANT), ..*sample };
         let step = before.step([&sides; 2], sample.dt);
         let equations = Sides { known: step.regressand(), factor: step.regressor() };
         let (estimator, corrected) =

@@ -96,9 +96,21 @@ where
         check(&y, &u, dt)?;
         let carried = self.carried(&u);
         let Some(before) = carried.as_ref().or(self.terms.as_ref()) else { return Ok(Innovation::nothing()) };
-        let terms = self.model.terms(&self.unwrapped(&y));
-        let (_, outcome) = self.propagate([before, &terms], [&u, &u], dt)?;
-        self.innovation_of(&outcome, dt)
+        let y = self.unwrapped(&y);
+        let (extension, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        self.innovation_of(&self.weighted_or(outcome, &extension, (&y, &u), dt), dt)
+    }
+
+    /// The outcome of a sample with the weight of its sensors at the estimate, where that is not constant.
+    fn weighted_or(
+        &self,
+        outcome: R::Step,
+        extension: &M::Extension,
+        (y, u): (&SVector<M::Scalar, NY>, &SVector<M::Scalar, NU>),
+        dt: M::Scalar,
+    ) -> R::Step {
+        let weighted = self.correction.as_ref();
+        weighted.and_then(|(sensors, _)| self.weighted(extension, (y, u), dt, sensors)).unwrap_or(outcome)
     }
 
     /// The innovation of an outcome.
@@ -178,7 +190,8 @@ where
             return Ok(Innovation::nothing());
         };
         let (y, left_out) = self.completed((before, last), y, (rows, &[true; NY]), &u, dt)?;
-        let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        let (extension, outcome) = self.propagate([before, &self.model.terms(&y)], [&u, &u], dt)?;
+        let outcome = self.weighted_or(outcome, &extension, (&y, &u), dt);
         self.innovation_of(&outcome.without(&left_out), dt)
     }
 

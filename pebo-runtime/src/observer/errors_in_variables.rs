@@ -1,17 +1,17 @@
-//! Samples whose noise is in the factor of the unknown too.
+//! Samples whose noise is in their equations otherwise than by a constant factor.
 //!
-//! In: a sample, the standard deviations of its outputs, and the estimate that the sample leads to as it is. Out: the
-//! same equations, linearised where the outputs are most likely to have been.
+//! In: a sample, the standard deviations of its outputs, and the estimate before it. Out: the same equations with the weight
+//! of the noise that is in them at this sample, linearised where the outputs are most likely to have been.
 
 use nalgebra::{SMatrix, SVector};
 
 use super::rebasing::{StepOf, Trigger};
 use super::{Next, Observer, State};
 use crate::numeric::sum::all_finite;
-use crate::{Estimator, Fault, Model, Real, RegressionOperator, Sides, Uncertain};
+use crate::{Estimator, Fault, Model, Outcome as _, Real, RegressionOperator, Sides, Uncertain};
 
-/// The standard deviations of the sensors, and the correction by them of an observer `O`: the regression after a step
-/// with its sample's equations linearised anew, from what the step has led to and the sample.
+/// The standard deviations of the sensors, and the correction by them of an observer `O`: estimator and regression after a
+/// sample with its equations weighted and linearised anew, from what was before it.
 pub(super) type Correction<
     O,
     M,
@@ -42,9 +42,9 @@ type Corrected<
     Led<'_, <M as Model<NX, NY, NU, NZ, NR, NE>>::Extension, E, R>,
     &TakenBy<'_, M, R, NX, NY, NU, NZ, NR, NE>,
     &SVector<<M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NY>,
-) -> Option<StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>>;
+) -> Option<(E, StepOf<R, <M as Model<NX, NY, NU, NZ, NR, NE>>::Scalar, NR, NE>)>;
 
-/// What a step has led to with its sample as it is, and the regression before it.
+/// The extension at the end of an interval, estimator and regression before its sample.
 #[derive(Clone, Copy)]
 pub(super) struct Led<'a, X, E, R> {
     pub(super) extension: &'a X,
@@ -79,16 +79,21 @@ where
     E: Estimator<M::Scalar, NR, NE> + Uncertain<M::Scalar, NE>,
     R: RegressionOperator<M::Scalar, NR, NE>,
 {
-    /// The same observer for a regression whose factor depends on outputs, as that of `sin(beta) p = cos(beta) q` does
-    /// on a bearing: with the standard deviation of each output's sensor, 0 for one without noise.
+    /// The same observer for a regression in which an output stands otherwise than with a constant factor, as a bearing does
+    /// in `sin(beta) p = cos(beta) q` and a range in `r^2 = p^2 + q^2`: with the standard deviation of each output's
+    /// sensor, 0 for one without noise.
     ///
-    /// The noise of a sample is then in the factor too, and its square pulls the estimate to zero. So each sample is
-    /// taken twice: as it is, and with its equations linearised at the outputs that are most likely after that. Where
-    /// little is known these outputs are the samples, and the equations are linear whatever the estimate is; where the
-    /// unknown is known better than the sensors tell, they are what the observer expects.
+    /// The noise of a sample is as large in an equation as its slope by the output. Where that is known, as `2 r` of a
+    /// range, the equation has the weight of its sensors at the sample, in place of a constant one. Where the noise is in
+    /// the factor of the unknown, a weight by the estimate would favour the error of the estimate, and the square of the
+    /// noise would pull it to zero.
+    ///
+    /// So each sample is taken twice: as it is, and with its equations linearised at the outputs that are most likely after
+    /// that. Where little is known these outputs are the samples, and the equations are linear whatever the estimate is;
+    /// where the unknown is known better than the sensors tell, they are what the observer expects.
     ///
     /// Holds when: the equations are [samples](crate::SampledRegression) and share no output. Costs two or three steps
-    /// and `4 NY + 2` evaluations of the regression.
+    /// and `6 NY + 4` evaluations of the regression.
     ///
     /// Source: errors in variables, adjusted with the observations: Deming, *Statistical adjustment of data*, 1943.
     ///
@@ -117,21 +122,58 @@ where
         self.keep(moved, terms, sample.y)
     }
 
-    /// The regression after a step, linearised anew; none where that has no value.
+    /// Estimator and regression after a sample that is weighted and linearised anew; none where that has no value.
     fn corrected(
         &self,
         Led { extension, estimator, regression }: Led<'_, M::Extension, E, R>,
         &Taken { y, u: [_, u], dt, left_out, .. }: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
         sensors: &SVector<M::Scalar, NY>,
-    ) -> Option<R::Step> {
+    ) -> Option<(E, R::Step)> {
         let model = &self.model;
         let sides = |y: &SVector<M::Scalar, NY>| model.regression(extension, &model.terms(y), u);
-        let root = estimator.covariance_root(nalgebra::zero())?;
-        let equations = Equations { sides: &sides, sensors, eta: estimator.estimate(), root };
-        let mut linearised = equations.linearised(y, &equations.likely(y, &left_out));
-        linearised.leave_out(&left_out);
-        let is_finite = all_finite(&linearised.known) && all_finite(&linearised.factor);
-        is_finite.then(|| regression.step([&linearised; 2], dt))
+        let constant = self.constant();
+        let learned = |mut sides: Sides<M::Scalar, NR, NE>| {
+            sides.leave_out(&left_out);
+            let is_finite = all_finite(&sides.known) && all_finite(&sides.factor);
+            let step = is_finite.then(|| regression.step([&sides; 2], dt))?;
+            let mut after = estimator.clone();
+            after.advance(&step.regressor(), &step.regressand(), dt).ok()?;
+            Some((after, step))
+        };
+        let equations = Equations::at(&sides, sensors, estimator, dt)?;
+        let (as_it_is, _) = learned(equations.weighted(y, &constant))?;
+        let equations = Equations::at(&sides, sensors, &as_it_is, nalgebra::zero())?;
+        learned(equations.linearised(y, &equations.likely(y, &left_out), &constant))
+    }
+
+    /// The standard deviation by which the regression weights each row, if the weight of its sensors replaces it: not of a
+    /// rate; else 0.
+    fn constant(&self) -> SVector<M::Scalar, NR> {
+        let ones = Sides { known: SVector::repeat(nalgebra::one()), factor: SMatrix::zeros() };
+        // Over a second a sample has the weight of its sensor.
+        let weights = self.state.regression.step([&ones; 2], nalgebra::one()).regressand();
+        let rates = self.model.rates();
+        SVector::from_fn(
+            |row, _| {
+                if row < rates { nalgebra::zero() } else { nalgebra::one::<M::Scalar>() / weights[row] }
+            },
+        )
+    }
+
+    /// A sample at the end of an interval of `dt` seconds with the weight of its sensors at the estimate; none where that
+    /// has no value.
+    pub(super) fn weighted(
+        &self,
+        extension: &M::Extension,
+        (y, u): (&SVector<M::Scalar, NY>, &SVector<M::Scalar, NU>),
+        dt: M::Scalar,
+        sensors: &SVector<M::Scalar, NY>,
+    ) -> Option<R::Step> {
+        let State { regression, estimator, .. } = &self.state;
+        let constant = self.constant();
+        let sides = |y: &SVector<M::Scalar, NY>| self.model.regression(extension, &self.model.terms(y), u);
+        let equations = Equations::at(&sides, sensors, estimator, dt)?;
+        Some(regression.step([&equations.weighted(y, &constant); 2], dt))
     }
 }
 
@@ -165,21 +207,40 @@ struct Equations<'a, F, S: Real, const NY: usize, const NE: usize> {
 }
 
 /// The residuals of equations beside a sample.
-struct Residuals<S: Real, const NR: usize, const NY: usize> {
+struct Residuals<S: Real, const NR: usize, const NY: usize, const NE: usize> {
     /// Their change with one standard deviation of each output.
     slopes: SMatrix<S, NR, NY>,
     /// The variance of each: by the sensors, and by what they do to the factor of an unknown that is not known.
     variances: SVector<S, NR>,
+    /// True for one with noise in its factor.
+    in_factor: [bool; NR],
+    /// The sides at the sample.
+    here: Sides<S, NR, NE>,
 }
 
-impl<F, S: Real, const NY: usize, const NE: usize> Equations<'_, F, S, NY, NE> {
+impl<'a, F, S: Real, const NY: usize, const NE: usize> Equations<'a, F, S, NY, NE> {
+    /// At the estimate of an estimator, `dt` seconds after its last sample.
+    fn at<E, const NR: usize>(sides: &'a F, sensors: &'a SVector<S, NY>, estimator: &E, dt: S) -> Option<Self>
+    where
+        F: Fn(&SVector<S, NY>) -> Sides<S, NR, NE>,
+        E: Estimator<S, NR, NE> + Uncertain<S, NE>,
+    {
+        Some(Self { sides, sensors, eta: estimator.estimate(), root: estimator.covariance_root(dt)? })
+    }
+
     /// By the change over one standard deviation to either side.
-    fn residuals<const NR: usize>(&self, y: &SVector<S, NY>) -> Residuals<S, NR, NY>
+    fn residuals<const NR: usize>(&self, y: &SVector<S, NY>) -> Residuals<S, NR, NY, NE>
     where
         F: Fn(&SVector<S, NY>) -> Sides<S, NR, NE>,
     {
         let half: S = Real::from_f64(0.5);
-        let mut residuals = Residuals { slopes: SMatrix::<S, NR, NY>::zeros(), variances: SVector::zeros() };
+        let here = (self.sides)(y);
+        let mut residuals = Residuals {
+            slopes: SMatrix::<S, NR, NY>::zeros(),
+            variances: SVector::zeros(),
+            in_factor: [false; NR],
+            here,
+        };
         for (output, &deviation) in self.sensors.iter().enumerate().filter(|(_, deviation)| **deviation > S::zero()) {
             let [mut above, mut below] = [*y; 2];
             above[output] += deviation;
@@ -188,8 +249,13 @@ impl<F, S: Real, const NY: usize, const NE: usize> Equations<'_, F, S, NY, NE> {
             let factor = (above.factor - below.factor) * half;
             let slopes = (above.known - below.known) * half - factor * self.eta;
             let spread = factor * self.root;
+            // Where the slope is 0 the square of the noise is left, of variance 2.
+            let beside = above.known + below.known - (above.factor + below.factor) * self.eta;
+            let bends = beside * half - (here.known - here.factor * self.eta);
             for row in 0..NR {
-                residuals.variances[row] += slopes[row] * slopes[row] + spread.row(row).norm_squared();
+                let (slope, bend) = (slopes[row], bends[row]);
+                residuals.variances[row] += slope * slope + (bend + bend) * bend + spread.row(row).norm_squared();
+                residuals.in_factor[row] |= factor.row(row).iter().any(|change| *change != S::zero());
             }
             residuals.slopes.set_column(output, &slopes);
         }
@@ -202,9 +268,8 @@ impl<F, S: Real, const NY: usize, const NE: usize> Equations<'_, F, S, NY, NE> {
     where
         F: Fn(&SVector<S, NY>) -> Sides<S, NR, NE>,
     {
-        let Sides { known, factor } = (self.sides)(y);
+        let Residuals { slopes, variances, here: Sides { known, factor }, .. } = self.residuals(y);
         let rest = known - factor * self.eta;
-        let Residuals { slopes, variances } = self.residuals(y);
         let mut change = SVector::<S, NY>::zeros();
         for row in (0..NR).filter(|row| !left_out[*row] && variances[*row] > S::zero()) {
             let slopes = slopes.row(row).transpose();
@@ -214,14 +279,43 @@ impl<F, S: Real, const NY: usize, const NE: usize> Equations<'_, F, S, NY, NE> {
         change
     }
 
-    /// The equations at a sample that is changed by so many standard deviations, linear in the change.
-    fn linearised<const NR: usize>(&self, y: &SVector<S, NY>, change: &SVector<S, NY>) -> Sides<S, NR, NE>
+    /// The equations at a sample that is changed by so many standard deviations, linear in the change, for a regression
+    /// that weights rows by these constant deviations.
+    fn linearised<const NR: usize>(
+        &self,
+        y: &SVector<S, NY>,
+        change: &SVector<S, NY>,
+        constant: &SVector<S, NR>,
+    ) -> Sides<S, NR, NE>
     where
         F: Fn(&SVector<S, NY>) -> Sides<S, NR, NE>,
     {
-        let at = y + change.component_mul(self.sensors);
-        let mut sides = (self.sides)(&at);
-        sides.known -= self.residuals(&at).slopes * change;
+        let mut residuals = self.residuals(&(y + change.component_mul(self.sensors)));
+        residuals.here.known -= residuals.slopes * change;
+        residuals.weighted(constant)
+    }
+
+    /// The equations at a sample as it is, for such a regression.
+    fn weighted<const NR: usize>(&self, y: &SVector<S, NY>, constant: &SVector<S, NR>) -> Sides<S, NR, NE>
+    where
+        F: Fn(&SVector<S, NY>) -> Sides<S, NR, NE>,
+    {
+        self.residuals(y).weighted(constant)
+    }
+}
+
+impl<S: Real, const NR: usize, const NY: usize, const NE: usize> Residuals<S, NR, NY, NE> {
+    /// The sides, each row multiplied so that its error comes to this constant deviation; not one with noise in its factor, and
+    /// none without an error or such a deviation.
+    fn weighted(self, constant: &SVector<S, NR>) -> Sides<S, NR, NE> {
+        let mut sides = self.here;
+        for row in (0..NR).filter(|row| !self.in_factor[*row]) {
+            let share = constant[row] / Real::sqrt(self.variances[row]);
+            if Real::is_finite(share) && share > S::zero() {
+                sides.known[row] *= share;
+                sides.factor.row_mut(row).scale_mut(share);
+            }
+        }
         sides
     }
 }

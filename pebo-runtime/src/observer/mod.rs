@@ -369,16 +369,12 @@ where
         let learned = |mut estimator: E, equations: &Sides<M::Scalar, NR, NE>| {
             estimator.advance(&equations.factor, &equations.known, sample.dt).map(|()| estimator)
         };
-        let Some((sensors, corrected)) = &self.correction else {
-            return Ok((learned(before, equations)?, None));
-        };
-        let estimator = learned(before.clone(), equations)?;
-        match corrected(self, Led { extension, estimator: &estimator, regression }, sample, sensors) {
-            Some(outcome) => {
-                let equations = Sides { known: outcome.regressand(), factor: outcome.regressor() };
-                Ok((learned(before, &equations)?, Some(outcome)))
-            }
-            None => Ok((estimator, None)),
+        let corrected = self.correction.as_ref().and_then(|(sensors, corrected)| {
+            corrected(self, Led { extension, estimator: &before, regression }, sample, sensors)
+        });
+        match corrected {
+            Some((estimator, outcome)) => Ok((estimator, Some(outcome))),
+            None => Ok((learned(before, equations)?, None)),
         }
     }
 

@@ -7,8 +7,8 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_runtime::{
-    Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer,
-    RegressionOperator, Uncertain, Within,
+    Bounded, Fault, Fundamental, Gate, Innovation, Integrator, Late, LateObserver, Limits, Model, Observer, Outcome,
+    RegressionOperator, Uncertain, Within, unwrapped,
 };
 
 use crate::settings::Prediction;
@@ -21,7 +21,7 @@ use super::monitored::MonitoredEstimator;
 use super::operator::PaddedOperator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
-use super::uncertainty::{Interval, NoiseModel, Surprise, Uncertainty};
+use super::uncertainty::{Interval, Learned, NoiseModel, Surprise, Uncertainty};
 
 /// An observer of any size.
 pub(crate) trait DynObserver: fmt::Debug {
@@ -287,19 +287,39 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
         let Some((before, z)) = before else {
             let rows: SMatrix<f64, N, N> = RegressionOperator::regressor(observer.regression());
             let root = observer.estimator().covariance_root(0.0).filter(|_| rows.amax() > 0.0);
-            let z = observer.extension().coordinates(&observer.theta());
-            return uncertainty.begin(model, (after, &u), root.map(|root| map * root).as_ref().map(|root| (root, &z)));
+            let z = &observer.extension().coordinates(&observer.theta());
+            let root = root.map(|root| map * root);
+            let shares = &shares(observer, (after, &u), dt * Inner::<X, K, N>::INSTANT);
+            return uncertainty.begin(model, (after, &u), root.as_ref().map(|root| Learned { root, z, shares }));
         };
+        let shares = &shares(observer, (after, &u), dt);
         let taken = observer.estimator().covariance_root(0.0).is_some_and(|root| {
             let missing: Vec<bool> = y.iter().map(|output| output.is_nan()).collect();
             let interval = Interval { before: &before, after, u: &u, dt, z };
             let factor = observer.estimator().estimator().factor();
-            uncertainty.take(model, &interval, (&(map * root), factor), &missing).is_ok()
+            let learned = Learned { root: &(map * root), z: &z, shares };
+            uncertainty.take(model, &interval, (learned, factor), &missing).is_ok()
         });
         if !taken {
             uncertainty.reset();
         }
     }
+}
+
+/// What each row of the last sample was multiplied by, so that it has the weight of its sensors at the estimate.
+fn shares<X: ReadableExtension<N>, K: RegressionType, const N: usize>(
+    observer: &Inner<X, K, N>,
+    (y, u): (&SVector<f64, N>, &SVector<f64, N>),
+    dt: f64,
+) -> SVector<f64, N> {
+    let taken: SMatrix<f64, N, N> = RegressionOperator::regressor(observer.regression());
+    let plain = observer.model().regression(observer.extension(), y, u);
+    let plain = RegressionOperator::step(observer.regression(), [&plain; 2], dt);
+    let plain: SMatrix<f64, N, N> = Outcome::regressor(&plain);
+    SVector::from_fn(|row, _| {
+        let share = taken.row(row).norm() / plain.row(row).norm();
+        if share.is_finite() && share > 0.0 { share } else { 1.0 }
+    })
 }
 
 /// The noise model of a design, where the noise of a sample is not only in its row.
@@ -412,9 +432,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> DynObserver for
         }
         let with_noise_elsewhere =
             self.uncertainty.as_ref().zip(now.terms_with(&pad(u))).and_then(|(uncertainty, before)| {
-                let (after, u) = (&pad(y), &pad(u));
-                let interval = Interval { before: &before, after, u, dt, z: self.independent_now() };
-                uncertainty.surprise(now.model(), &interval, &innovation.value, self.sizes.1)
+                let (sample, periods): (SVector<f64, N>, _) = (pad(y), now.model().periods());
+                let after = &SVector::from_fn(|i, _| unwrapped(sample[i], before[i], periods[i]));
+                let interval = Interval { before: &before, after, u: &pad(u), dt, z: self.independent_now() };
+                uncertainty.surprise(now.model(), &interval, self.sizes.1)
             });
         // A sample so far off that its covariance is beyond a double's range stands out by its row alone.
         let own = Surprise { square: innovation.normalised_square, determinant: innovation.determinant };

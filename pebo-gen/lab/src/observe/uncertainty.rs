@@ -88,6 +88,19 @@ struct Propagation<const N: usize> {
     of_noise: SMatrix<f64, N, N>,
     of_sample: SMatrix<f64, N, N>,
     rows: SMatrix<f64, N, N>,
+    /// The sample less its expectation, in each row.
+    rest: SVector<f64, N>,
+}
+
+/// What least squares have after a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Learned<'a, const N: usize> {
+    /// A root of their covariance of z.
+    pub(crate) root: &'a SMatrix<f64, N, N>,
+    /// Their estimate of z.
+    pub(crate) z: &'a SVector<f64, N>,
+    /// What each row was multiplied by, so that it has the weight of its sensors at the estimate.
+    pub(crate) shares: &'a SVector<f64, N>,
 }
 
 impl<const N: usize> Uncertainty<N> {
@@ -111,12 +124,12 @@ impl<const N: usize> Uncertainty<N> {
     }
 
     /// Takes the first sample: in the output form it is the estimate of outputs with rates, and its noise is their error.
-    /// If the other rows were taken, least squares have the covariance `root root^T` after them, and this estimate of z.
+    /// If the other rows were taken, that is what least squares have after them.
     pub(crate) fn begin<M>(
         &mut self,
         model: &M,
         (y, u): (&SVector<f64, N>, &SVector<f64, N>),
-        learned: Option<(&SMatrix<f64, N, N>, &SVector<f64, N>)>,
+        learned: Option<Learned<'_, N>>,
     ) where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
@@ -134,11 +147,10 @@ impl<const N: usize> Uncertainty<N> {
             map.view_mut((0, self.rows), beside).copy_from(&held.view((0, self.rows), beside));
             errors = map * errors * map.transpose();
         }
-        if let Some((root, z)) = learned {
+        if let Some(Learned { root, z, shares }) = learned {
             let mut rows = model.regression(&M::Extension::new(SVector::zeros()), y, u).factor;
             rows.rows_mut(0, self.rows).fill(0.0);
-            let weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
-            let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&weights);
+            let gain = root * root.transpose() * rows.transpose() * SMatrix::from_diagonal(&self.weighted(shares));
             let (kept, taken) = (SMatrix::identity() - gain * rows, gain * self.of_sample(model, y, u, z));
             let crossed = kept * both * taken.transpose();
             errors =
@@ -148,8 +160,8 @@ impl<const N: usize> Uncertainty<N> {
         self.joint = Some(JointCovariance { errors, both, noise });
     }
 
-    /// Takes a step that went well, after which least squares have the covariance `root root^T` of z, and process noise
-    /// times the factor. A missing output has been replaced by what the observer expects of it.
+    /// Takes a step that went well, with what least squares have after it, and process noise times the factor. A missing
+    /// output has been replaced by what the observer expects of it.
     ///
     /// # Errors
     /// [`Fault::Singular`] where the flow has no exponential, as of the step itself.
@@ -157,17 +169,17 @@ impl<const N: usize> Uncertainty<N> {
         &mut self,
         model: &M,
         interval: &Interval<'_, N>,
-        (root, factor): (&SMatrix<f64, N, N>, f64),
+        (Learned { root, shares, .. }, factor): (Learned<'_, N>, f64),
         missing: &[bool],
     ) -> Result<(), Fault>
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
         let Some(JointCovariance { errors, both, noise }) = self.joint else { return Ok(()) };
-        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval)?;
+        let Propagation { of_errors, of_noise, of_sample, rows, .. } = self.propagated(model, interval)?;
         let one = SMatrix::<f64, N, N>::identity();
         let (mut present, mut expected) = (one, SMatrix::<f64, N, N>::zeros());
-        let mut weights = self.weights.map(|deviation| 1.0 / (deviation * deviation));
+        let mut weights = self.weighted(shares);
         for (row, output) in self.measured.iter().enumerate().filter(|(_, output)| missing[**output]) {
             // The substitute for a missing output has the error of its expectation.
             present[(*output, *output)] = 0.0;
@@ -199,19 +211,13 @@ impl<const N: usize> Uncertainty<N> {
         Ok(())
     }
 
-    /// The square of an innovation in the norm of its covariance; `innovation` is in standard deviations of the rows.
-    pub(crate) fn surprise<M>(
-        &self,
-        model: &M,
-        interval: &Interval<'_, N>,
-        innovation: &SVector<f64, N>,
-        equations: usize,
-    ) -> Option<Surprise>
+    /// The square of an innovation in the norm of its covariance.
+    pub(crate) fn surprise<M>(&self, model: &M, interval: &Interval<'_, N>, equations: usize) -> Option<Surprise>
     where
         M: Model<N, N, N, N, N, N, Scalar = f64, Terms = SVector<f64, N>>,
     {
         let JointCovariance { errors, both, noise } = self.joint?;
-        let Propagation { of_errors, of_noise, of_sample, rows } = self.propagated(model, interval).ok()?;
+        let Propagation { of_errors, of_noise, of_sample, rows, rest } = self.propagated(model, interval).ok()?;
         let (by_error, by_noise, by_sample) = (-rows * of_errors, -rows * of_noise, of_sample - rows * of_noise);
         let sensors = SMatrix::from_diagonal(&self.sensors.component_mul(&self.sensors));
         let drift = self.drift_over(interval.dt);
@@ -224,7 +230,8 @@ impl<const N: usize> Uncertainty<N> {
             _ => f64::from(u8::from(i == j)),
         });
         let scaled = Cholesky::new(scaled)?;
-        let square = innovation.dot(&scaled.solve(innovation));
+        let innovation = rest.component_div(&self.weights);
+        let square = innovation.dot(&scaled.solve(&innovation));
         square.is_finite().then(|| Surprise { square, determinant: scaled.determinant() })
     }
 
@@ -250,6 +257,11 @@ impl<const N: usize> Uncertainty<N> {
             }
         }
         squares.iter().all(|square| square.is_finite()).then(|| squares.map(f64::sqrt))
+    }
+
+    /// The weights of the rows with these shares.
+    fn weighted(&self, shares: &SVector<f64, N>) -> SVector<f64, N> {
+        self.weights.zip_map(shares, |deviation, share| (share / deviation).powi(2))
     }
 
     /// What z drifts in this time, as a covariance.
@@ -312,8 +324,9 @@ impl<const N: usize> Uncertainty<N> {
         let one = SMatrix::<f64, N, N>::identity();
         // The mean of both ends drives the flow over the interval, by the trapezoidal rule.
         let of_noise = (one + of_errors) * self.slopes(after, rate) * (0.25 * dt);
-        let rows = model.regression(&M::Extension::new(SVector::zeros()), after, u).factor;
-        Ok(Propagation { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows })
+        let sides = model.regression(&M::Extension::new(SVector::zeros()), after, u);
+        let (rows, rest) = (sides.factor, sides.known - sides.factor * z);
+        Ok(Propagation { of_errors, of_noise, of_sample: self.of_sample(model, after, u, z), rows, rest })
     }
 
     /// The derivative of a sample's rows by its outputs: the known side, less its expectation at z.

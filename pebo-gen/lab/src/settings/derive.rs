@@ -8,6 +8,8 @@
 //! of their sensors is process noise too, and `D_y z'` is without the slopes that the output form has. For a regression
 //! whose unknowns are functions of theta, both are carried over to these functions.
 
+use std::collections::BTreeSet;
+
 use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::analysis::{Derivation, OutputSlopes, Regression, RegressionKind, are_affine_in_outputs};
 use pebo_design::model::{Decimal, Form, Model};
@@ -359,8 +361,6 @@ struct Formulas {
     rates: Slopes,
     /// The derivatives of these slopes by the unknowns, for each row.
     curvatures: Vec<Expr>,
-    /// The same of the primitive.
-    held_curvatures: Vec<Expr>,
     /// The unknowns, by theta.
     unknowns: Slopes,
     eta: Vec<Symbol>,
@@ -429,7 +429,6 @@ impl Formulas {
             phi: Slopes::new(plant, &phi, &[x.as_slice(), &y].concat()),
             flow,
             curvatures: rates[rates.len() - instants..].iter().flat_map(bent).collect(),
-            held_curvatures: held.iter().flat_map(bent).collect(),
             held: Slopes::new(plant, &held, &y),
             rates: driven,
             unknowns: Slopes::new(plant, &regression.eta, &plant.theta),
@@ -473,12 +472,19 @@ impl Formulas {
         Some([start, noise(drift)?, noise(sensed)?])
     }
 
-    /// The standard deviations of the sensors, where their noise is in a factor of the unknown of samples too.
+    /// The standard deviations of the sensors, where their noise is in the factor of the unknown, or a row of an instant has a
+    /// slope by an output that is not constant.
     fn errors_in_variables(&self, plant: &Plant, kind: ObserverKind, sensors: &[f64]) -> Option<Vec<Rational>> {
-        let mut curvatures = self.curvatures.iter().chain(&self.held_curvatures);
-        let is_noisy = curvatures.any(|slope| !plant.arena.is_zero(*slope));
+        let instants = plant.y.len() * self.instants;
+        let of_instants = &self.rates.by[self.rates.by.len().saturating_sub(instants)..];
+        let parameters: BTreeSet<Symbol> = plant.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let is_constant =
+            |slope: &Expr| plant.arena.symbols_of(&[*slope]).iter().all(|symbol| parameters.contains(symbol));
+        let eta = self.eta.iter().copied().collect();
+        let is_in_factor = |slope: &Expr| plant.arena.depends_on(*slope, &eta);
+        let varies = self.held.by.iter().any(is_in_factor) || !of_instants.iter().all(is_constant);
         let deviations = || sensors.iter().map(|deviation| rounded(*deviation)).collect();
-        if is_noisy && kind != ObserverKind::Filtered { deviations() } else { None }
+        if varies && kind != ObserverKind::Filtered { deviations() } else { None }
     }
 
     /// The standard deviation of each row's samples.

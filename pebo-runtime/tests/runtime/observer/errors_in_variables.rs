@@ -88,3 +88,59 @@ fn deviations_are_finite_and_not_negative() {
         assert_eq!(refused, Err(Fault::Gain));
     }
 }
+
+/// `r^2 = z` with the output r, and `z' = u`.
+#[derive(Clone, Copy, Debug)]
+struct Range;
+
+impl Model<1, 1, 1, 1, 1, 1> for Range {
+    type Scalar = f64;
+    type Extension = Integrator<f64, 1>;
+    type X = Scalar;
+    type Y = Scalar;
+    type U = Scalar;
+    type Terms = Scalar;
+    const REGRESSION: Regression = Regression::Static;
+
+    fn terms(&self, y: &Scalar) -> Scalar {
+        *y
+    }
+    fn flow(&self, _y: &Scalar, u: &Scalar) -> Flow<f64, 1> {
+        Flow::plain(*u)
+    }
+    fn regression(&self, extension: &Self::Extension, y: &Scalar, _u: &Scalar) -> Sides<f64, 1, 1> {
+        Sides { known: y.component_mul(y) - extension.chi(), factor: SMatrix::from([[1.0]]) }
+    }
+    fn theta(&self, eta: &Scalar) -> Scalar {
+        *eta
+    }
+    fn recover(&self, z: &Scalar, _y: &Scalar) -> Scalar {
+        *z
+    }
+}
+
+impl Rebase<1, 1, 1, 1, 1> for Range {}
+
+#[test]
+fn an_equation_has_the_weight_of_its_sensor_at_the_sample() {
+    const RANGE: f64 = 0.1;
+    let estimator = LeastSquares::diagonal(&Scalar::new(1e4), 0.0).unwrap();
+    // As at a range of 1.
+    let regression = SampledRegression::new(&Scalar::new(2.0 * RANGE)).unwrap();
+    let observer = Observer::with_regression(Range, estimator, regression, Scalar::zeros()).unwrap();
+    let constant = observer.clone().rebasing(1).unwrap();
+    let weighted = observer.with_errors_in_variables(&Scalar::new(RANGE)).unwrap().rebasing(1).unwrap();
+    for (mut observer, tenfold) in [(weighted, 1.0), (constant, 10.0)] {
+        for k in 0..1000_u32 {
+            // From a range of 1 to one of 10, and there.
+            let u = if k < 100 { 1.0 } else { 0.0 };
+            let truth = (1.0 + f64::from(k.min(99))).sqrt();
+            let noise = if k % 2 == 0 { RANGE } else { -RANGE };
+            let (y, u) = (Scalar::new(truth + noise), Scalar::new(u));
+            let innovation = observer.innovation(y, u, 1.0).unwrap().value.x;
+            // The mean over all samples is known to a share of a sample's noise that falls with their number.
+            assert!(k < 900 || (innovation.abs() - tenfold).abs() < 0.1 * tenfold, "{k}: {innovation}");
+            observer.step(y, u, 1.0).unwrap();
+        }
+    }
+}
