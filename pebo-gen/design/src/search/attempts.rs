@@ -55,9 +55,18 @@ pub(super) fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> A
         others.run(class);
         attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
-    let is_quiet = |c: &Candidate| c.is_full() && c.is_everywhere() && !c.multiplies_samples() && !c.takes_samples();
-    if class != Some(Class::Pebo) && !attempts.candidates.iter().any(is_quiet) {
-        attempts.of_values();
+    if class != Some(Class::Pebo) {
+        let is_quiet =
+            |c: &&Candidate| c.is_full() && !c.copies_an_output() && !c.multiplies_samples() && c.taken() == 0;
+        let least = attempts.candidates.iter().filter(is_quiet).map(Candidate::exceptions).min();
+        if least != Some((0, 0)) {
+            let known = attempts.candidates.len();
+            attempts.of_values();
+            // One that does without nothing less is no better: values drive it as samples.
+            let found = attempts.candidates.split_off(known);
+            let is_better = |c: &Candidate| least.is_none_or(|least| c.exceptions() < least);
+            attempts.candidates.extend(found.into_iter().filter(is_better));
+        }
     }
     if let Some(class) = class {
         attempts.candidates.retain(|candidate| candidate.derivation.class == class);
@@ -154,7 +163,7 @@ impl Attempts<'_> {
     /// in all of its forms, a generalised one may do without; likewise where it has exceptions.
     fn is_over(&self) -> bool {
         let is_plain = self.class == Class::Pebo;
-        let is_filtered = |c: &Candidate| c.unfiltered().is_empty() && c.multiplied() == 0;
+        let is_filtered = |c: &Candidate| c.unfiltered().is_empty() && c.multiplied() == 0 && c.unused() == 0;
         let is_quiet = |c: &Candidate| !c.copies_an_output() && (is_plain || is_filtered(c) && c.is_everywhere());
         !self.problem.goes_on() || self.candidates.iter().any(|c| c.is_full() && c.is_linear() && is_quiet(c))
     }
@@ -493,7 +502,14 @@ impl Attempts<'_> {
                 continue;
             }
             // The equations of values may be affine in the states where their rates are not.
-            let by_values = form == Form::States && self.problem.plant.y.iter().any(|output| output.value.is_some());
+            let begins_so = match form {
+                Form::States => true,
+                Form::Closure(start) => {
+                    matches!(start, Start::Values | Start::ValuesAndStates | Start::ValuesAndRates)
+                }
+                _ => false,
+            };
+            let by_values = begins_so && self.problem.plant.y.iter().any(|output| output.value.is_some());
             if index == 0 && (choice.affine || by_values) {
                 self.prove(&phi);
             } else {

@@ -92,9 +92,10 @@ impl Candidate {
     }
 
     /// The order of candidates: an accepted one, that recovers all states, filters all measured states, has outputs
-    /// affine in z and few exceptions, takes few samples as they are, multiplies few, and has the plainer form.
+    /// affine in z and leaves few out, has few exceptions, takes few samples as they are, multiplies few, and has the
+    /// plainer form.
     pub(super) fn merit(&self) -> impl Ord + use<> {
-        (self.standing(), self.conditions.len(), self.unfiltered().len(), self.multiplied(), self.form())
+        (self.standing(), self.unused(), self.conditions.len(), self.unfiltered().len(), self.multiplied(), self.form())
     }
 
     /// The order of candidates by what they are worth whatever the noise of the sensors is.
@@ -106,6 +107,16 @@ impl Candidate {
         };
         let missing = self.plant.x.len() - self.recovered().min(self.plant.x.len());
         (accepted, missing, self.copies_an_output(), !self.is_linear())
+    }
+
+    /// The number of outputs whose equations its regression leaves out.
+    pub(super) fn unused(&self) -> usize {
+        self.derivation.regression.result.as_ref().map_or(0, |regression| regression.unused.len())
+    }
+
+    /// What it does without: outputs, and the values for which a condition does not hold.
+    pub(super) fn exceptions(&self) -> (usize, usize) {
+        (self.unused(), self.conditions.len())
     }
 
     /// Tests whether it holds wherever the plant's own formulas have values: near an exception, estimates are lost.
@@ -137,14 +148,17 @@ impl Candidate {
         self.derivation.left_inverse.result.iter().flat_map(|inverse| &inverse.x).flat_map(taken).collect()
     }
 
-    /// Tests whether a state is made of samples of an output whose rate is no equation of the observer: with its rate, it is
-    /// a state of the observer, and filtered.
-    pub(super) fn takes_samples(&self) -> bool {
+    /// The number of states that are made of samples of an output whose rate is no equation of the observer: with its rate,
+    /// it is a state of the observer, and filtered.
+    pub(super) fn taken(&self) -> usize {
+        self.unfiltered().iter().filter(|(_, output)| !self.is_state(*output)).count()
+    }
+
+    /// Tests whether an output is a state of the observer: by its rate.
+    fn is_state(&self, output: Symbol) -> bool {
         let regression = self.derivation.regression.result.as_ref();
-        let with_rates =
-            regression.and_then(|regression| regression.outputs_with_rates(&self.plant)).unwrap_or_default();
-        let is_state = |output: &Symbol| with_rates.iter().any(|place| self.plant.y[*place].symbol == *output);
-        self.unfiltered().iter().any(|(_, output)| !is_state(output))
+        let with_rates = regression.and_then(|regression| regression.outputs_with_rates(&self.plant));
+        with_rates.unwrap_or_default().iter().any(|place| self.plant.y[*place].symbol == output)
     }
 
     /// Tests whether a state is a sample as it is, and samples of outputs given by value are factors of the unknowns:

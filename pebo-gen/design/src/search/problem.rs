@@ -129,7 +129,7 @@ impl<'a> Problem<'a> {
 }
 
 /// States that outputs with a rate determine by their value, as functions of these and of the remaining states: `th` by
-/// `m = th`, `p` or `b` by `m = p + b`. In the rates they are measured. An output determines one of its states, in the
+/// `m = th`, `p` or `b` by `m = p + b`, `i` by `m = k*i`. In the rates they are measured. An output determines one of its states, in the
 /// first turn the first that moves, in each further turn the next.
 fn measured(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
     let arena = &plant.arena;
@@ -154,8 +154,8 @@ fn measured(plant: &Plant, turn: usize) -> BTreeMap<Symbol, Expr> {
         }
         let is_steep = |state: &Symbol| {
             let slope = arena.derivative(value, *state);
-            let is_free = !arena.depends_on(slope, &states) && !arena.is_zero(slope);
-            is_free && domain.implies(arena, slope, Relation::NonZero)
+            let is_affine = !arena.depends_on(slope, &BTreeSet::from([*state])) && !arena.is_zero(slope);
+            is_affine && domain.implies(arena, slope, Relation::NonZero)
         };
         let mut measured: Vec<Symbol> = plant.x.iter().map(|x| x.symbol).filter(|x| symbols.contains(x)).collect();
         measured.retain(is_steep);

@@ -300,6 +300,31 @@ fn few_components_are_preferred_unless_more_of_them_multiply_fewer_samples() {
     assert_eq!(chosen(grade), ["v", "s", "k", "v*k", "s*k"]);
 }
 
+/// Single-track cars, tanks and epidemics, whose outputs are given by value.
+#[test]
+fn transforms_that_use_all_outputs_everywhere_are_preferred() {
+    let found = |lines: &str| {
+        let chosen = solve(&plant(lines), None).candidates.swap_remove(0);
+        assert!(chosen.is_full(), "{lines}");
+        (chosen.formulas(), chosen.exceptions())
+    };
+    // Without the lateral acceleration, neutral steer would be an exception.
+    let car = "parameters: {m: 1500, I: 2500, f: 1.2, g: 1.5}\nx: [v, cf, cr]\ny: [r, a]\nu: [d, s]\n\
+               assume: [s > 0, cf > 0, cr > 0]\ndefine: {front: cf*(d - (v + f*r)/s), rear: cr*(g*r - v)/s}\n\
+               f_x: {v: (front + rear)/m - s*r, cf: 0, cr: 0}\nf_y: {r: (f*front - g*rear)/I}\n\
+               g_y: {a: (front + rear)/m}";
+    let all = |formulas: &[&str]| (formulas.iter().map(ToString::to_string).collect::<Vec<_>>(), (0, 0));
+    assert_eq!(found(car), all(&["cf", "cr", "v*cf", "v*cr"]));
+    // The sample of the outflow less itself filters nothing.
+    let tank = "parameters: {k: 0.1}\nx: [h]\ny: [p, q]\nu: [v]\nassume: [p > 0, h > 0]\n\
+                f_x: {h: k*sqrt(p) - k*sqrt(h)}\nf_y: {p: v - k*sqrt(p)}\ng_y: {q: k*sqrt(h)}";
+    assert_eq!(found(tank), all(&["h"]));
+    // What is reported is a part of the infected, who are known by it.
+    let epidemic = "parameters: {g: 0.1, b: 0.4}\nx: [s, i, k]\ny: [r]\nassume: [i > 0, s > 0, k > 0]\n\
+                    f_x: {s: -b*s*i, i: b*s*i - g*i, k: 0}\ng_y: {r: k*i}";
+    assert_eq!(found(epidemic), all(&["s + r/k", "1/k"]));
+}
+
 #[test]
 fn a_plain_cascade_is_preferred_where_no_value_of_an_output_is_needed() {
     let plant = plant("parameters: {c: 0.35}\nx: [v]\ny: [p]\nu: [a]\nf_x: {v: a - c*v}\nf_y: {p: v}");

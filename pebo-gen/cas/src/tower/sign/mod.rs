@@ -95,6 +95,16 @@ impl Sign {
         self != Self::Negative
     }
 
+    /// The sign of the negated value, where there is one for it.
+    fn negated(self) -> Option<Self> {
+        match self {
+            Self::Positive => Some(Self::Negative),
+            Self::Negative => Some(Self::Positive),
+            Self::Zero => Some(Self::Zero),
+            Self::NonNegative => None,
+        }
+    }
+
     fn times(self, other: Self) -> Option<Self> {
         match (self, other) {
             (Self::Zero, _) | (_, Self::Zero) => Some(Self::Zero),
@@ -196,9 +206,11 @@ impl Signs<'_, '_> {
             let variable = Poly::variable(variable);
             if let Some(quotient) = rest.div_exact(&variable.pow(exponent, self.field.limit())?, self.field.limit())? {
                 rest = quotient;
-                let Some(product) = self.by_terms(&variable).and_then(|sign| total.times(sign)) else {
-                    return Ok(None);
+                let sign = match self.by_terms(&variable) {
+                    Some(sign) => Some(sign),
+                    None => self.by_shift(&variable)?,
                 };
+                let Some(product) = sign.and_then(|sign| total.times(sign)) else { return Ok(None) };
                 total = product;
             }
         }

@@ -1,4 +1,4 @@
-//! Signs of sums with a square root or an absolute value, by the difference of the squares of both parts.
+//! Signs of sums with a root or an absolute value, by the difference of the powers of both parts.
 
 use crate::poly::Poly;
 
@@ -8,29 +8,45 @@ use crate::tower::Obstacle;
 /// More terms are not squared.
 const MOST_TERMS: usize = 16;
 
+/// The most terms that a power is multiplied out to.
+const MOST_IN_POWER: u32 = 64;
+
 impl Signs<'_, '_> {
-    /// The sign of `a + c s` with a square root s: that of `c` if `c^2 s^2 > a^2`, that of `a` if less.
+    /// The sign of `a + c s` with a root s of degree n: that of `c` if `c^n s^n > |a|^n`, that of `a` if less.
     pub(in crate::tower) fn by_root(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         if poly.term_count() > MOST_TERMS { Ok(None) } else { self.nested(|| self.by_squares(poly)) }
     }
 
     fn by_squares(&self, poly: &Poly) -> Result<Option<Sign>, Obstacle> {
         for &variable in poly.variables() {
-            let square = {
+            let power = {
                 let kernels = self.field.round.kernels.borrow();
-                let relation = kernels[variable].relation.as_ref().filter(|relation| relation.degree == 2);
-                relation.map(|relation| relation.value.clone())
+                kernels[variable].relation.as_ref().map(|relation| (relation.degree, relation.value.clone()))
             };
-            let Some(square) = square.filter(|_| poly.degree(variable) == 1) else { continue };
+            let exponent = poly.degree(variable);
+            let Some((degree, power)) = power.filter(|_| exponent > 0) else { continue };
             if !self.of_kernel(variable).is_some_and(Sign::is_positive_or_zero) {
                 continue;
             }
-            let (mut rest, mut factor) = (Poly::zero(), Poly::zero());
-            for (exponent, coefficient) in poly.coefficients_in(variable) {
-                *(if exponent == 0 { &mut rest } else { &mut factor }) = coefficient;
+            let (mut rest, mut factor, mut between) = (Poly::zero(), Poly::zero(), false);
+            for (own, coefficient) in poly.coefficients_in(variable) {
+                match own {
+                    0 => rest = coefficient,
+                    _ if own == exponent => factor = coefficient,
+                    _ => between = true,
+                }
             }
             let limit = self.field.limit();
-            let ahead = &factor.mul(&factor, limit)?.mul(&square, limit)? - &rest.mul(&rest, limit)?;
+            if between {
+                continue;
+            }
+            if (degree, exponent) != (2, 1) {
+                match self.by_powers((&factor, &rest), degree, &power.pow(exponent, limit)?)? {
+                    Some(sign) => return Ok(Some(sign)),
+                    None => continue,
+                }
+            }
+            let ahead = &factor.mul(&factor, limit)?.mul(&power, limit)? - &rest.mul(&rest, limit)?;
             let (leading, sign) = match self.of_polynomial(&ahead)? {
                 Some(sign @ (Sign::Positive | Sign::NonNegative | Sign::Zero)) => (factor, sign),
                 Some(Sign::Negative) => (rest, Sign::Positive),
@@ -46,6 +62,29 @@ impl Signs<'_, '_> {
         }
         Ok(None)
     }
+
+    /// The sign of `rest + factor s` with parts of opposite signs, for `s >= 0` with this n-th power.
+    fn by_powers(&self, (factor, rest): (&Poly, &Poly), n: u32, power: &Poly) -> Result<Option<Sign>, Obstacle> {
+        let limit = self.field.limit();
+        let is_short = |part: &Poly| {
+            let terms = u32::try_from(part.term_count()).unwrap_or(u32::MAX);
+            terms.checked_pow(n).is_some_and(|terms| terms <= MOST_IN_POWER)
+        };
+        if !is_short(factor) || !is_short(rest) {
+            return Ok(None);
+        }
+        let (Some(leads), Some(lags)) = (self.of_polynomial(factor)?, self.of_polynomial(rest)?) else {
+            return Ok(None);
+        };
+        let (of_root, of_rest) = match (leads, lags) {
+            (Sign::Positive, Sign::Negative) => (factor.clone(), -rest),
+            (Sign::Negative, Sign::Positive | Sign::NonNegative) => (-factor, rest.clone()),
+            _ => return Ok(None),
+        };
+        let ahead = &of_root.pow(n, limit)?.mul(power, limit)? - &of_rest.pow(n, limit)?;
+        let ahead = if leads == Sign::Positive { ahead } else { -&ahead };
+        self.of_polynomial(&self.field.reduce(&ahead)?)
+    }
 }
 
 #[cfg(test)]
@@ -54,6 +93,30 @@ mod tests {
     use crate::graph::expr::Expr;
     use crate::tower::Field;
     use crate::{Arena, Facts, Rational, Relation};
+
+    #[test]
+    fn roots_are_ordered_as_what_is_under_them() {
+        let arena = Arena::new();
+        let [p, q] = ["p", "q"].map(|name| arena.variable(name));
+        let mut facts = Facts::new();
+        for positive in [q, arena.sub(p, q)] {
+            facts.assume(positive, Relation::Positive);
+        }
+        let ratio = |above, below, exponent: Rational| arena.power(arena.div(above, below), &exponent);
+        let part = |above: i64, below: i64| &Rational::from(above) / &Rational::from(below);
+        let less_than_one = |expr| arena.sub(arena.one(), expr);
+        let cases = [
+            (less_than_one(ratio(q, p, part(2, 7))), Some(Sign::Positive)),
+            (less_than_one(ratio(q, p, part(1, 3))), Some(Sign::Positive)),
+            (less_than_one(ratio(p, q, part(1, 3))), Some(Sign::Negative)),
+            (less_than_one(arena.power(q, &part(1, 3))), None),
+        ];
+        for (expr, expected) in cases {
+            let field = Field::over(&arena, &facts, &[expr]).unwrap();
+            let sign = field.signs().of(&field.fraction(expr).unwrap()).unwrap();
+            assert_eq!(sign, expected, "{}", arena.print(expr));
+        }
+    }
 
     #[test]
     fn the_larger_square_decides() {

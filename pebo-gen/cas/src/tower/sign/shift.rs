@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::graph::expr::Node;
+use crate::graph::function::Function;
 use crate::poly::Poly;
 use crate::{Integer, Relation};
 
@@ -29,9 +31,38 @@ impl Signs<'_, '_> {
         if poly.term_count() > MOST_TERMS || poly.total_degree() > MOST_DEGREE {
             return Ok(None);
         }
-        let facts = self.memory.round.facts.borrow().clone();
+        let mut facts = self.memory.round.facts.borrow().clone();
+        for &variable in poly.variables() {
+            facts.extend(self.bounds_of_call(variable)?);
+        }
         let mut tries = MOST_TRIES;
         self.shifted(poly, &facts, &Distances::new(), &mut tries)
+    }
+
+    /// The bounds of a sine, cosine or hyperbolic tangent, and of an exponential of what has a sign.
+    fn bounds_of_call(&self, variable: u32) -> Result<Vec<(Poly, Relation)>, Obstacle> {
+        let (one, call) = (Poly::one(), Poly::variable(variable));
+        let Node::Call(function, arguments) = self.field.arena.node(self.field.kernel(variable)) else {
+            return Ok(Vec::new());
+        };
+        let bounded = |relation| vec![(&one - &call, relation), (&one + &call, relation)];
+        Ok(match function {
+            Function::Sin | Function::Cos => bounded(Relation::NonNegative),
+            Function::Tanh => bounded(Relation::Positive),
+            Function::Exp => {
+                let strict = |sign| if sign == Sign::Positive { Relation::Positive } else { Relation::NonNegative };
+                let sign_of = |argument| self.of(&self.field.fraction(argument)?);
+                let (above, below) = (sign_of(arguments[0])?, sign_of(self.field.arena.neg(arguments[0]))?);
+                match (above, below) {
+                    (Some(sign @ (Sign::Positive | Sign::NonNegative)), _) => vec![(&call - &one, strict(sign))],
+                    (_, Some(sign @ (Sign::Positive | Sign::NonNegative))) => {
+                        vec![(call.clone(), Relation::Positive), (&one - &call, strict(sign))]
+                    }
+                    _ => Vec::new(),
+                }
+            }
+            _ => Vec::new(),
+        })
     }
 
     fn shifted(
@@ -136,7 +167,7 @@ impl Bound {
 mod tests {
     use crate::Rational;
     use crate::{Arena, Expr};
-    use crate::{Facts, Relation};
+    use crate::{Facts, Function, Relation};
 
     use super::Sign;
     use crate::tower::sign::Field;
@@ -267,6 +298,33 @@ mod tests {
             (
                 |a, [p, q, _]| vec![(a.sub(p, q), Relation::Positive)],
                 |a, [p, q, _]| a.sub(power(a, p, 2), power(a, q, 2)),
+                None,
+            ),
+        ),
+        (
+            "an exponential of what is not positive",
+            (
+                |a, [p, q, _]| vec![(p, Relation::Positive), (q, Relation::Positive)],
+                |a, [p, q, r]| {
+                    let decaying = a.call(Function::Exp, &[a.neg(power(a, r, 2))]);
+                    a.add(p, a.mul(a.sub(q, p), decaying))
+                },
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "a hyperbolic tangent does not reach its bounds",
+            (
+                |_, [p, ..]| vec![(p, Relation::Positive)],
+                |a, [p, q, _]| a.add(a.mul(p, a.one()), a.mul(p, a.call(Function::Tanh, &[q]))),
+                Some(Sign::Positive),
+            ),
+        ),
+        (
+            "a sine reaches its bounds",
+            (
+                |_, [p, ..]| vec![(p, Relation::Positive)],
+                |a, [p, q, _]| a.sub(a.mul(p, a.call(Function::Sin, &[q])), p),
                 None,
             ),
         ),

@@ -138,10 +138,12 @@ mod tests {
         // By the assumptions: (1 - d)^2 on the open interval.
         let facts = gram_of("0 < d < 1", "p: (1 - d)*a + d*b, q: b");
         assert_eq!(facts.positive, Some(Positive::Assumed));
-        // By division: 1 + d sin(e), whose sign no rule finds, on the box that the assumptions state, and
-        // on a turn of e.
+        // By the bounds of a sine.
         let rates = "p: (1 + d*sin(e))*a + d*b, q: b";
         assert_eq!(gram_of("0 < d < 0.9, -3 < e < 3", rates).positive, Some(Positive::Assumed));
+        assert_eq!(gram_of("0 < d < 1", rates).positive, Some(Positive::Assumed));
+        // By division: 1 + d sin(e + d), whose sign no rule finds, on a turn of e.
+        let rates = "p: (1 + d*sin(e + d))*a + d*b, q: b";
         assert_eq!(gram_of("0 < d < 0.9", rates).positive, Some(Positive::Divided));
     }
 
@@ -150,11 +152,11 @@ mod tests {
         for (assume, rates) in [
             ("0 < d < 2", "p: (1 - d)*a + d*b, q: b"),
             // On the face of the closed box.
-            ("0 < d < 1, -3 < e < 3", "p: (1 - d*cos(e))*a + d*b, q: b"),
+            ("0 < d <= 1, -3 < e < 3", "p: (1 - d*cos(e))*a + d*b, q: b"),
             // At one point inside.
             ("-1 < d < 1, -1 < e < 1", "p: ((d - 1/3)^2 + (e - 1/7)^2)*a, q: b"),
             // Positive, but on no bounded box.
-            ("0 < d < 0.9", "p: (2 + sin(e)*d)*a + b/(1 + e^2), q: b*(2 + sin(e*d))"),
+            ("0 < d < 0.9", "p: (2 + sin(e + e*d))*a + d*b, q: b"),
         ] {
             assert_eq!(gram_of(assume, rates).positive, None, "{assume}: {rates}");
         }

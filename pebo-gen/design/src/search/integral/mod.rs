@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy;
 use pebo_cas::tower::Field;
-use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Symbol};
+use pebo_cas::{Arena, Domain, Expr, Function, Node, Rational, Relation, Symbol};
 
 use logarithm::logarithm;
 
@@ -103,6 +103,9 @@ impl Rules<'_> {
             };
             return Some(arena.div(integral, slope));
         }
+        if *exponent == -pebo_cas::number::rational::half() {
+            return self.arc(base);
+        }
         let Node::Call(function, arguments) = arena.node(base) else { return None };
         let (argument, slope) = (arguments[0], self.slope(arguments[0])?);
         let call = |function| arena.call(function, &[argument]);
@@ -126,6 +129,23 @@ impl Rules<'_> {
             _ => return None,
         };
         Some(arena.div(integral, slope))
+    }
+
+    /// The antiderivative of `1/sqrt(a - b s^2)`, an arcsine; of an angle that a sensor shows by its sine.
+    fn arc(&self, base: Expr) -> Option<Expr> {
+        let arena = self.arena;
+        let symbol = arena.of_symbol(self.symbol);
+        let first = arena.derivative(base, self.symbol);
+        let bend = arena.scale(arena.derivative(first, self.symbol), &-pebo_cas::number::rational::half());
+        let at_zero = |expr: Expr| arena.substitute(expr, &BTreeMap::from([(self.symbol, arena.zero())]));
+        if !self.is_free(bend) || !arena.is_zero(at_zero(first)) {
+            return None;
+        }
+        let constant = self.tidied(arena.div(at_zero(base), bend))?;
+        let is_positive = |expr: Expr| self.domain.implies(arena, expr, Relation::Positive);
+        let [reach, steepness] = [self.tidied(arena.sqrt(constant))?, self.tidied(arena.sqrt(bend))?];
+        let arc = arena.call(Function::Asin, &[arena.div(symbol, reach)]);
+        (is_positive(constant) && is_positive(bend)).then(|| arena.div(arc, steepness))
     }
 
     /// A polynomial times a sine, cosine or exponential.
@@ -250,6 +270,25 @@ impl Rules<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_inverse_root_of_what_is_left_of_a_square_is_an_arc() {
+        let arena = Arena::new();
+        let [q, e, x] = ["q", "e", "x"].map(|name| arena.variable(name));
+        let symbol = arena.as_symbol(q).unwrap();
+        let mut domain = Domain::default();
+        for positive in [e, x] {
+            domain.facts.assume(positive, Relation::Positive);
+        }
+        let square = |expr| arena.mul(expr, expr);
+        let root = |above: Expr| arena.power(arena.sub(above, square(q)), &-pebo_cas::number::rational::half());
+        let amplitude = arena.div(e, x);
+        let cases = [(root(square(e)), "asin(q/e)"), (root(square(amplitude)), "asin(q*x/e)")];
+        for (slope, expected) in cases {
+            let found = antiderivative(&arena, &domain, slope, symbol).map(|found| arena.print(found));
+            assert_eq!(found.as_deref(), Some(expected));
+        }
+    }
 
     #[test]
     fn powers_of_differences_are_kept() {
