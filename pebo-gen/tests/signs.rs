@@ -132,7 +132,7 @@ const TABLE: &[(&str, &[&str], ProvedSign)] = &[
     ("3 + sin(x) + cos(x)", &[], Positive),
     ("1 - sin(x)^2/2", &[], Positive),
     ("a - b*cos(x)^2", &["a - b", "b"], Positive),
-    ("a + b*cos(x)", &["a - b", "b"], Open),
+    ("a + b*cos(x)", &["a - b", "b"], Positive),
     ("a + b*cos(x)", &["b - a", "b"], Nothing),
     // Angles within a quadrant.
     ("cos(x)", &["x + pi/2", "pi/2 - x"], Positive),

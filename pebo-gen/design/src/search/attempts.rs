@@ -56,8 +56,7 @@ pub(super) fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> A
         attempts.candidates.extend(others.candidates.into_iter().filter(Candidate::is_full));
     }
     if class != Some(Class::Pebo) {
-        let is_quiet =
-            |c: &&Candidate| c.is_full() && !c.copies_an_output() && !c.multiplies_samples() && c.taken() == 0;
+        let is_quiet = |c: &&Candidate| c.is_full() && !c.multiplies_samples() && c.taken() == 0;
         let least = attempts.candidates.iter().filter(is_quiet).map(Candidate::exceptions).min();
         if least != Some((0, 0)) {
             let known = attempts.candidates.len();

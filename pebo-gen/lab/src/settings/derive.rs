@@ -121,8 +121,7 @@ pub(super) fn derive(
         problems.push(out_of_range(asked.map_or(model.name.span, |(_, span)| span)));
         return None;
     };
-    let is_noisy = !adapts || process_noise.iter().any(|noise| !noise.is_zero());
-    let process_noise = is_noisy.then_some(process_noise);
+    let process_noise = Some(process_noise).filter(|noise| !adapts || noise.iter().any(|noise| !noise.is_zero()));
     let covariance = Covariance { start, forgetting: Rational::from(0), process_noise };
     let settings = Settings {
         operator,

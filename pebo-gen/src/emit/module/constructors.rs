@@ -236,11 +236,11 @@ impl Module<'_> {
         };
         let (jumps, built) = match &settings.feedthrough {
             Some(outputs) => {
-                let place = |output: &usize| proc_macro2::Literal::usize_unsuffixed(*output);
-                let outputs = outputs.iter().map(|output| match output.as_ref().map(place) {
-                    Some(output) => quote!(Some(#output)),
-                    None => quote!(None),
-                });
+                let place = |output| {
+                    let output = proc_macro2::Literal::usize_unsuffixed(output);
+                    quote!(Some(#output))
+                };
+                let outputs = outputs.iter().map(|output| output.map_or_else(|| quote!(None), place));
                 (Some(quote!(let observer = #built?;)), quote!(observer.with_feedthrough([#(#outputs),*])))
             }
             None => (None, built),

@@ -318,13 +318,12 @@ impl Reader<'_> {
                     Some(List(chi_0)),
                 ],
             ) => {
-                let filtered = matches!(operator, Operator::Filter(_));
                 let (estimator, [lower, upper]) = match estimator {
                     Made::Estimator(estimator) => (estimator, [None, None]),
                     Bounded(estimator, bounds) => (estimator, bounds),
                     _ => return None,
                 };
-                if filtered != (function == "Tuned::new") {
+                if matches!(operator, Operator::Filter(_)) != (function == "Tuned::new") {
                     return None;
                 }
                 let (output, expected) = match form {

@@ -39,7 +39,9 @@ impl Signs<'_, '_> {
             let minus_discriminant = &a.mul(&c, self.field.limit())?.scale(&four) - &b.mul(&b, self.field.limit())?;
             let root = (-&minus_discriminant).sqrt_exact(self.field.limit())?;
             if let Some(root) = root.filter(|root| !root.is_zero()) {
-                match self.of_factors((&a, &b, &root), Poly::variable(variable).pow(degree / 2, self.field.limit())?)? {
+                match self
+                    .of_factors((&a, &b, &root), &Poly::variable(variable).pow(degree / 2, self.field.limit())?)?
+                {
                     Some(sign) if upward == Sign::Positive => return Ok(Some(sign)),
                     Some(sign) if upward == Sign::Negative => return Ok(sign.negated()),
                     _ => continue,
@@ -69,8 +71,8 @@ impl Signs<'_, '_> {
     }
 
     /// The sign of `(2 a v + b)^2 - root^2`, by those of its two factors.
-    fn of_factors(&self, (a, b, root): (&Poly, &Poly, &Poly), v: Poly) -> Result<Option<Sign>, Obstacle> {
-        let middle = &a.mul(&v, self.field.limit())?.scale(&Integer::from(2)) + b;
+    fn of_factors(&self, (a, b, root): (&Poly, &Poly, &Poly), v: &Poly) -> Result<Option<Sign>, Obstacle> {
+        let middle = &a.mul(v, self.field.limit())?.scale(&Integer::from(2)) + b;
         let (Some(below), Some(above)) =
             (self.of_polynomial(&(&middle - root))?, self.of_polynomial(&(&middle + root))?)
         else {

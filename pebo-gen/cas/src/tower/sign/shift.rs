@@ -304,7 +304,7 @@ mod tests {
         (
             "an exponential of what is not positive",
             (
-                |a, [p, q, _]| vec![(p, Relation::Positive), (q, Relation::Positive)],
+                |_, [p, q, _]| vec![(p, Relation::Positive), (q, Relation::Positive)],
                 |a, [p, q, r]| {
                     let decaying = a.call(Function::Exp, &[a.neg(power(a, r, 2))]);
                     a.add(p, a.mul(a.sub(q, p), decaying))
