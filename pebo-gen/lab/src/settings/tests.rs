@@ -262,6 +262,22 @@ fn a_late_output_that_drives_the_observer_has_an_equation_of_its_own() {
     assert!(problems[0].message.contains("`b` cannot be late: the observer needs it"), "{problems:?}");
 }
 
+/// Variances of a share and of a pressure, of units that set them apart by 1e25: neither is raised for the other. One of
+/// zero is less than the least.
+#[test]
+fn variances_at_the_start_do_not_depend_on_the_units_of_others() {
+    let covariance = |start: &str| {
+        let text = format!(
+            "model: m\nx: [p, s, c]\ny: [y]\nu: [v]\nf_x: {{p: 0, s: 0, c: 0}}\ng_y: {{y: v*p + v^2*s + c}}\n\
+             phi: [p, s, c]\nobserver: {{sensors: {{y: 1}}, start: {start}, disturbance: {{p: 1}}}}\n\
+             simulation: {{step: 0.1, initial: {{p: 1e7, s: 1e-6, c: 1}}, control: {{v: sin(t)}}}}\n"
+        );
+        numbers(&derived(&text).0.unwrap())[0].clone()
+    };
+    assert_eq!(covariance("{p: 1e7, s: 1e-6, c: 1}"), [1e14, 1e-12, 1.0]);
+    assert_eq!(covariance("{p: 1e7, s: 1e-6, c: 0}"), [1e14, 1e-12, 1e-24]);
+}
+
 /// A car whose lateral acceleration has the steering angle in it.
 const CAR: &str = "model: m\nx: [c, p]\ny: [r, a]\nu: [d]\nf_x: {c: 0, p: a*c}\nf_y: {r: 2*c*d - p - r}\n\
                    g_y: {a: c*d + p - r}\nphi: [c, p]\n\
