@@ -9,11 +9,10 @@ use super::rebasing::Trigger;
 use super::{Observer, State, is_none};
 use crate::numeric::sum::blemish;
 use crate::regression::{Outcome, Rows};
-use crate::{Estimator, Fault, Model, Real, RegressionOperator, Uncertain};
+use crate::{Estimator, Fault, Model, OutputForm, Real, RegressionOperator, Uncertain};
 
-/// The standard deviations of a sensor within which an estimate explains a sample: as
-/// [`OutputForm::NEAR`](crate::OutputForm::NEAR).
-const NEAR: f64 = 3.0;
+/// The standard deviations of a sensor within which an estimate explains a sample.
+const NEAR: f64 = OutputForm::<(), f64, 0, 0>::NEAR;
 
 /// The output that each row gives by its value with the input in it, and the terms of the last sample of an observer `O`
 /// with another input at that instant; none where they do not change.
@@ -93,5 +92,26 @@ where
         let carried = model.terms(&carried);
         let flow = model.flow(&carried, u);
         is_none(blemish(&flow.h) + blemish(&flow.lambda)).then_some(carried)
+    }
+}
+
+impl<M, E, R, const NX: usize, const NY: usize, const NU: usize, const NZ: usize, const NR: usize, const NE: usize>
+    Observer<M, E, NX, NY, NU, NZ, NR, NE, R>
+where
+    M: Model<NX, NY, NU, NZ, NR, NE>,
+    E: Estimator<M::Scalar, NR, NE>,
+    R: RegressionOperator<M::Scalar, NR, NE>,
+{
+    /// The terms from which an interval with this input begins: those of the last accepted output, just after the input has
+    /// jumped, see [`with_feedthrough`](Self::with_feedthrough); none before the first sample.
+    pub fn terms_with(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
+        self.carried(u).or(self.terms)
+    }
+
+    /// The terms from which an interval with this input begins, where they are not those of the last sample.
+    #[inline]
+    pub(super) fn carried(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
+        let (outputs, after_jump) = self.feedthrough.as_ref()?;
+        after_jump(self, outputs, u)
     }
 }

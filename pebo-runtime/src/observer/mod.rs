@@ -262,12 +262,6 @@ where
         self.terms.as_ref()
     }
 
-    /// The terms from which an interval with this input begins: those of the last accepted output, just after the input has
-    /// jumped, see [`with_feedthrough`](Self::with_feedthrough); none before the first sample.
-    pub fn terms_with(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
-        self.carried(u).or(self.terms)
-    }
-
     /// The dynamic extension.
     pub fn extension(&self) -> &M::Extension {
         &self.state.extension
@@ -523,13 +517,6 @@ where
         let before = carried.as_ref().or(self.terms.as_ref()).ok_or(Fault::State)?;
         let (extension, regression) = self.propagate([before, terms], u, dt)?;
         Ok((extension, without(regression, left_out)))
-    }
-
-    /// The terms from which an interval with this input begins, where they are not those of the last sample.
-    #[inline]
-    fn carried(&self, u: &SVector<M::Scalar, NU>) -> Option<M::Terms> {
-        let (outputs, after_jump) = self.feedthrough.as_ref()?;
-        after_jump(self, outputs, u)
     }
 
     /// The estimate of the state that goes with an output.

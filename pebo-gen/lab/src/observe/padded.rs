@@ -306,7 +306,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
     }
 }
 
-/// What each row of the last sample was multiplied by, so that it has the weight of its sensors at the estimate.
+/// What each row of the last sample was multiplied by, so that it has the weight of its sensors there.
 fn shares<X: ReadableExtension<N>, K: RegressionType, const N: usize>(
     observer: &Inner<X, K, N>,
     (y, u): (&SVector<f64, N>, &SVector<f64, N>),

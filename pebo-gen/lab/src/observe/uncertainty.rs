@@ -99,7 +99,7 @@ pub(crate) struct Learned<'a, const N: usize> {
     pub(crate) root: &'a SMatrix<f64, N, N>,
     /// Their estimate of z.
     pub(crate) z: &'a SVector<f64, N>,
-    /// What each row was multiplied by, so that it has the weight of its sensors at the estimate.
+    /// What each row was multiplied by, so that it has the weight of its sensors there.
     pub(crate) shares: &'a SVector<f64, N>,
 }
 

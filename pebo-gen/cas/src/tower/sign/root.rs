@@ -41,7 +41,7 @@ impl Signs<'_, '_> {
                 continue;
             }
             if (degree, exponent) != (2, 1) {
-                match self.by_powers((&factor, &rest), degree, &power.pow(exponent, limit)?)? {
+                match self.by_powers((&factor, &rest), degree, (&power, exponent))? {
                     Some(sign) => return Ok(Some(sign)),
                     None => continue,
                 }
@@ -63,14 +63,19 @@ impl Signs<'_, '_> {
         Ok(None)
     }
 
-    /// The sign of `rest + factor s` with parts of opposite signs, for `s >= 0` with this n-th power.
-    fn by_powers(&self, (factor, rest): (&Poly, &Poly), n: u32, power: &Poly) -> Result<Option<Sign>, Obstacle> {
+    /// The sign of `rest + factor s^m` with parts of opposite signs, for `s >= 0` with this n-th power.
+    fn by_powers(
+        &self,
+        (factor, rest): (&Poly, &Poly),
+        n: u32,
+        (power, m): (&Poly, u32),
+    ) -> Result<Option<Sign>, Obstacle> {
         let limit = self.field.limit();
-        let is_short = |part: &Poly| {
+        let is_short = |part: &Poly, n| {
             let terms = u32::try_from(part.term_count()).unwrap_or(u32::MAX);
             terms.checked_pow(n).is_some_and(|terms| terms <= MOST_IN_POWER)
         };
-        if !is_short(factor) || !is_short(rest) {
+        if !is_short(factor, n) || !is_short(rest, n) || !is_short(power, m) {
             return Ok(None);
         }
         let (Some(leads), Some(lags)) = (self.of_polynomial(factor)?, self.of_polynomial(rest)?) else {
@@ -81,7 +86,7 @@ impl Signs<'_, '_> {
             (Sign::Negative, Sign::Positive | Sign::NonNegative) => (-factor, rest.clone()),
             _ => return Ok(None),
         };
-        let ahead = &of_root.pow(n, limit)?.mul(power, limit)? - &of_rest.pow(n, limit)?;
+        let ahead = &of_root.pow(n, limit)?.mul(&power.pow(m, limit)?, limit)? - &of_rest.pow(n, limit)?;
         let ahead = if leads == Sign::Positive { ahead } else { -&ahead };
         self.of_polynomial(&self.field.reduce(&ahead)?)
     }
