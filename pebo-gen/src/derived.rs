@@ -94,7 +94,7 @@ impl Derived {
             _ => plant.x.first().map_or(Span::NOWHERE, |state| state.rate.span),
         };
         let refusal = search.refusal(&plant, states);
-        let derivation = Derivation::without_transform(vec![refusal], search.symmetry.is_some());
+        let derivation = Derivation::without_transform(vec![refusal], search.is_unobservable);
         Ok(Self { model, plant, derivation })
     }
 

@@ -22,7 +22,7 @@ pub struct SearchReport {
     candidates: Vec<CandidateReport>,
     /// The transform that would be accepted with a declaration, if none is accepted as it is.
     assumed: Option<AssumedReport>,
-    /// A direction of the states that no output shows.
+    /// A change of the states that no output shows.
     symmetry: Option<SymmetryReport>,
     bound: Option<BoundReport>,
     /// The bound for transforms affine in x, if it is small.
@@ -45,9 +45,11 @@ struct AssumedReport {
     phi: Vec<String>,
 }
 
-/// The states that move along a direction, and their speeds.
+/// The states that move along a direction, with their speeds; or that change their signs, with their other values.
 #[derive(Clone, Debug, Serialize)]
 struct SymmetryReport {
+    /// `direction` or `signs`.
+    kind: &'static str,
     states: Vec<String>,
     direction: Vec<String>,
 }
@@ -95,8 +97,9 @@ impl SearchReport {
                 phi: candidate.formulas(),
             }),
             symmetry: search.symmetry.as_ref().map(|symmetry| SymmetryReport {
+                kind: symmetry.kind.word(),
                 states: symmetry.states.iter().map(|(state, _)| plant.arena.name(*state)).collect(),
-                direction: symmetry.states.iter().map(|(_, speed)| plant.arena.print(*speed)).collect(),
+                direction: symmetry.entries(&plant.arena),
             }),
             bound: search.bound.as_ref().map(|found| bound(&plant.arena, found)),
             bound_affine: search.affine.as_ref().map(|found| bound(&plant.arena, found)),

@@ -39,6 +39,11 @@ pub enum Declaration {
 }
 
 impl Declaration {
+    /// True if it is a smaller domain of the same plant.
+    pub(super) fn is_of_domain(&self) -> bool {
+        matches!(self, Self::Positive(_) | Self::Angles(_) | Self::Bounded(_))
+    }
+
     /// The lines of the model file of the plant with it.
     pub fn lines(&self, plant: &Plant) -> String {
         let arena = &plant.arena;

@@ -14,8 +14,10 @@ pub struct Search {
     pub verdict: SearchVerdict,
     /// The transforms that were proved or refuted, in order of merit.
     pub candidates: Vec<Candidate>,
-    /// A direction of the states that no output shows, where none is accepted.
+    /// A change of the states that no output shows, where none is accepted.
     pub symmetry: Option<Symmetry>,
+    /// True if by the symmetry no observer recovers all states, and no declaration of the domain that was tried ends it.
+    pub is_unobservable: bool,
     /// A transform that would be accepted with a declaration, where none is accepted as it is.
     pub declared: Vec<(Candidate, Declaration)>,
     /// The bound on the rank of dphi/dx for transforms with a plain cascade, where the search computed it: for smooth

@@ -46,7 +46,7 @@ pub use declaration::Declaration;
 pub use found::{Attempt, Form, Search, SearchVerdict, Start};
 pub use frame::{Block, blocks};
 use problem::Problem;
-pub use symmetry::Symmetry;
+pub use symmetry::{Symmetry, SymmetryKind};
 pub use words::settles;
 
 /// Searches for a transform of the plant, of one class of cascade or of any.
@@ -102,11 +102,6 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let excluded = excluded && again();
     let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
     let symmetry = if found { None } else { symmetry() };
-    let verdict = match (found, excluded || symmetry.is_some()) {
-        (true, _) => SearchVerdict::Found,
-        (false, true) => SearchVerdict::None,
-        (false, false) => SearchVerdict::Undecided,
-    };
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
@@ -120,7 +115,18 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     } else {
         without_unseen().or_else(helpful).map_or_else(lacking, |declared| vec![declared])
     };
-    Search { verdict, candidates, symmetry, declared, bound, affine, generalised, tried }
+    // A plant that lacks only a sign is as yet undecided: with its declaration there is an observer.
+    let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();
+    let is_unobservable = symmetry.as_ref().is_some_and(|symmetry| match symmetry.kind {
+        SymmetryKind::Direction => true,
+        SymmetryKind::Signs => !declared.iter().any(decides),
+    });
+    let verdict = match (found, excluded || is_unobservable) {
+        (true, _) => SearchVerdict::Found,
+        (false, true) => SearchVerdict::None,
+        (false, false) => SearchVerdict::Undecided,
+    };
+    Search { verdict, candidates, symmetry, is_unobservable, declared, bound, affine, generalised, tried }
 }
 
 /// The author's transform with functions of its components, where it has a generalised cascade and a left inverse but

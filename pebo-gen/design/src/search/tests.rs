@@ -8,8 +8,8 @@ use super::closure::darboux::invariant;
 use super::closure::observable::observable;
 use super::completion::decision::decided;
 use super::problem::Problem;
-use super::solve;
-use super::symmetry::symmetry;
+use super::symmetry::{SymmetryKind, symmetry};
+use super::{SearchVerdict, solve};
 use crate::analysis::Class;
 use crate::model::Model;
 use crate::plant::Plant;
@@ -138,14 +138,40 @@ fn symmetries_are_those_that_no_output_shows() {
         ),
         // A gain and the signal that it multiplies.
         ("x: [k, p]\ny: [q]\nf_x: {k: 0, p: -p}\nf_y: {q: k*p}", Some("k k, p -p")),
-        // The input shows the gain, the square a sign alone, the sine a turn alone.
+        // The input shows the gain, the square all but a sign, the sine all but a turn.
         ("x: [k, p]\ny: [q]\nu: [u]\nf_x: {k: 0, p: u - p}\nf_y: {q: k*p}", None),
-        ("x: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p^2}", None),
+        ("x: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p^2}", Some("p to -p")),
         ("x: [p]\ny: [q]\nf_x: {p: 1}\nf_y: {q: sin(p)}", None),
+        // Gases of which the sum is measured: a shift from one to the other decays. A gas that leaves faster is shown.
+        (
+            "x: [a, b]\ny: [p]\nu: [u]\nassume: [a > 0, b > 0]\nf_x: {a: u - a*(a + b), b: 1 - b*(a + b)}\ng_y: {p: a + b}",
+            Some("a 1, b -1"),
+        ),
+        (
+            "x: [a, b]\ny: [p]\nu: [u]\nassume: [a > 0, b > 0]\nf_x: {a: u - a*(a + b), b: 1 - 2*b*(a + b)}\ng_y: {p: a + b}",
+            None,
+        ),
+        // Two of three, the third carried into them; and with an unmeasured signal.
+        ("x: [a, b, c]\ny: [p]\nf_x: {a: b*sin(p), b: c*p, c: -c*b^2}\nf_y: {p: -p}", Some("a 1")),
+        ("x: [a, b, c]\ny: [p]\nw: [f]\nf_x: {a: f - p*a, b: c - f - p*b, c: -c}\nf_y: {p: a + b}", Some("a 1, b -1")),
+        // Rates of turn about two axes; one of them known to be positive, or shown at a threshold that is no even one.
+        ("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b}", Some("a to -a, b to -b")),
+        ("x: [a, b]\ny: [r]\nassume: [a > 0]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b}", None),
+        ("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b + abs(a - 1)}", None),
+        ("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b + abs(a)}", Some("a to -a, b to -b")),
+        // A formula that has values for one sign alone.
+        ("x: [a]\ny: [r]\nf_x: {a: -a}\nf_y: {r: sqrt(a)^4}", None),
+        // A state that is zero is its opposite.
+        ("x: [a, b]\ny: [r]\nf_x: {a: -a, b: 0}\nf_y: {r: b^3 + a^2}\nidentities: [a]", None),
+        // A load that the motor's unmeasured torque turns with it.
+        ("x: [p]\ny: [q]\nw: [f]\nf_x: {p: f}\nf_y: {q: p^2}", Some("p to -p")),
         // An identity determines what the outputs do not.
         ("x: [a, b]\ny: [q]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}\nidentities: [a*b - 2]", None),
-        // A direction that vanishes by an identity moves nothing.
-        ("x: [a, b]\ny: [q]\nf_x: {a: (5*a - b)/2, b: (a + 3*b)/2}\nf_y: {q: a - b}\nidentities: [a - b]", None),
+        // Two equal states: what moves them apart vanishes, what moves both grows.
+        (
+            "x: [a, b]\ny: [q]\nf_x: {a: (5*a - b)/2, b: (a + 3*b)/2}\nf_y: {q: a - b}\nidentities: [a - b]",
+            Some("a 1, b 1"),
+        ),
         // Of an output without an equation nothing is known.
         ("x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}", None),
     ];
@@ -153,12 +179,26 @@ fn symmetries_are_those_that_no_output_shows() {
         let plant = plant(lines);
         let found = symmetry(&Problem::of(&plant)).unwrap();
         let shown = found.map(|found| {
-            let of =
-                |(state, speed): &(Symbol, Expr)| format!("{} {}", plant.arena.name(*state), plant.arena.print(*speed));
+            let verb = if found.kind == SymmetryKind::Signs { " to" } else { "" };
+            let of = |(state, entry): &(Symbol, Expr)| {
+                format!("{}{verb} {}", plant.arena.name(*state), plant.arena.print(*entry))
+            };
             found.states.iter().map(of).collect::<Vec<_>>().join(", ")
         });
         assert_eq!(shown.as_deref(), expected, "{lines}");
     }
+}
+
+/// A sign that a declaration decides leaves the search undecided; where none does, there is no observer.
+#[test]
+fn a_plant_that_lacks_a_sign_is_not_refused() {
+    let lacking = solve(&plant("x: [p]\ny: [q]\nf_x: {p: -p}\nf_y: {q: p^2}"), None);
+    assert_eq!(
+        (lacking.verdict, lacking.declared.len(), lacking.is_unobservable),
+        (SearchVerdict::Undecided, 1, false)
+    );
+    let turned = solve(&plant("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b}"), None);
+    assert_eq!((turned.verdict, turned.is_unobservable), (SearchVerdict::None, true));
 }
 
 /// Surfaces with known Killing fields: three on constant curvature, one on a surface of revolution.

@@ -12,6 +12,7 @@ use super::candidate::Candidate;
 use super::declaration::{Declaration, unseen};
 use super::found::{Attempt, Form, Search, SearchVerdict, Start};
 use super::frame::{Block, blocks};
+use super::symmetry::SymmetryKind;
 
 impl SearchVerdict {
     /// The verdict in a word.
@@ -218,7 +219,7 @@ impl Search {
 
     /// The open possibilities after a search that found none.
     pub fn open(&self) -> Option<&'static str> {
-        let excluded = self.symmetry.is_none() && self.generalised.as_ref().is_some_and(Bound::excludes);
+        let excluded = !self.is_unobservable && self.generalised.as_ref().is_some_and(Bound::excludes);
         (self.verdict == SearchVerdict::None && excluded).then_some(
             "a phi that is not affine in x, with a generalised cascade; the search looked for such and found none",
         )
@@ -258,8 +259,21 @@ impl Search {
             diagnostic = diagnostic.note(bound.sentence(&plant.arena));
         }
         diagnostic = diagnostic.note("`pebo-gen solve` shows what was tried");
-        let general = "measure another signal, assume the signs of what is positive, or write a phi of your own";
-        diagnostic.help(self.help().unwrap_or_else(|| general.to_owned()))
+        diagnostic.help(self.help().unwrap_or_else(|| self.general_help(&plant.arena)))
+    }
+
+    /// The advice where no declaration was found that helps.
+    fn general_help(&self, arena: &Arena) -> String {
+        let signed = self.symmetry.as_ref().filter(|symmetry| symmetry.kind == SymmetryKind::Signs);
+        match signed.and_then(|symmetry| symmetry.states.first()) {
+            Some((state, _)) => format!(
+                "assume the sign of one of them if it is known, as `assume: [{} > 0]`, or measure another signal",
+                arena.name(*state)
+            ),
+            None => {
+                "measure another signal, assume the signs of what is positive, or write a phi of your own".to_owned()
+            }
+        }
     }
 
     /// The refusal of the best transform, with the declarations with which one is accepted; a direction of its unknowns
