@@ -91,6 +91,17 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
         u: &SVector<Self::Scalar, NU>,
     ) -> Sides<Self::Scalar, NR, NE>;
 
+    /// True if the regression is one to first order in `theta`: `phi_0` is the equation where the extension is `z`, and
+    /// `phi_1` its slope by `theta` there. The observer must then be [re-based](crate::Observer::rebasing) at every
+    /// sample: it is recursive Gauss-Newton (Ljung, *System identification*, 1999, Section 11.4), and converges from a
+    /// neighbourhood.
+    const LOCAL: bool = false;
+
+    /// [`LOCAL`](Self::LOCAL), for a model of which only the run knows it.
+    fn is_local(&self) -> bool {
+        Self::LOCAL
+    }
+
     /// Both sides under the derivative of a dynamic regression: `primitive_0`, as a rule the outputs whose equations
     /// are used, and `primitive_1`, the factor of the unknown. Not read if the regression is static.
     fn primitive(&self, _extension: &Self::Extension, _terms: &Self::Terms) -> Sides<Self::Scalar, NR, NE> {
@@ -259,9 +270,9 @@ pub struct OutputSlopes<S: Real, const NR: usize, const NZ: usize> {
     pub cascade: SMatrix<S, NZ, NR>,
 }
 
-/// Marks a model that can be re-based exactly.
+/// Marks a model that can be re-based exactly, or that [is local](Model::is_local), so that it has to be.
 ///
-/// It holds if `theta(eta) = eta` and the regression knows `z` only as an affine function: for every shift `c`, moving
+/// The first holds if `theta(eta) = eta` and the regression knows `z` only as an affine function: for every shift `c`, moving
 /// `c` from the extension into `theta` (see [`Extension::rebase`]) leaves `phi_1` and `primitive_1` as they are and
 ///
 /// ```text

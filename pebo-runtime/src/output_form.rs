@@ -189,7 +189,8 @@ where
         let mut held = self.model.primitive(&start, terms);
         let mut outputs = SMatrix::<M::Scalar, NR, NR>::identity();
         if M::INSTANTS > 0 {
-            let instant = self.model.regression(&start, terms, u);
+            let z = SVector::from_fn(|i, _| extension.xi()[rates + i]);
+            let instant = self.affine(terms, u, &z);
             let slopes = self.model.output_slopes(terms, u, &SVector::zeros()).rates;
             let known = instant.known - product(&slopes, &held.known);
             let factor = instant.factor - product(&slopes, &held.factor);
@@ -284,6 +285,25 @@ impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
         }
     }
 
+    /// The model's regression as an affine function of z: where its extension starts, `z = theta`; a local one is linearised
+    /// at this estimate.
+    #[inline]
+    fn affine<const NX: usize, const NY: usize, const NU: usize>(
+        &self,
+        terms: &M::Terms,
+        u: &SVector<S, NU>,
+        z: &SVector<S, NZ>,
+    ) -> Sides<S, NR, NZ>
+    where
+        M: Rebase<NX, NY, NU, NZ, NR, Scalar = S>,
+    {
+        if !self.model.is_local() {
+            return self.model.regression(&M::Extension::new(SVector::zeros()), terms, u);
+        }
+        let Sides { known, factor } = self.model.regression(&M::Extension::new(*z), terms, u);
+        Sides { known: known - applied(&factor, z), factor }
+    }
+
     /// Makes the flow that of these outputs, linearised at this estimate.
     #[inline]
     fn linearise<const NX: usize, const NY: usize, const NU: usize, const NW: usize>(
@@ -297,11 +317,10 @@ impl<M, S: Real, const NR: usize, const NZ: usize> OutputForm<M, S, NR, NZ> {
     {
         let rates = NW - NZ;
         let inner = self.model.flow(terms, u);
-        // At the extension's start `z = theta`: the regression is then known as a function of z.
-        let start = M::Extension::new(SVector::zeros());
-        let rate = self.model.regression(&start, terms, u);
-        let held = self.model.primitive(&start, terms);
-        let slopes = self.model.output_slopes(terms, u, &SVector::from_fn(|i, _| z[NW - NZ + i]));
+        let z = SVector::from_fn(|i, _| z[rates + i]);
+        let rate = self.affine(terms, u, &z);
+        let held = self.model.primitive(&M::Extension::new(SVector::zeros()), terms);
+        let slopes = self.model.output_slopes(terms, u, &z);
         let known = rate.known - product(&slopes.rates, &held.known);
         let h = inner.h - product(&slopes.cascade, &held.known);
         let factor = rate.factor - product(&slopes.rates, &held.factor);

@@ -25,6 +25,8 @@ FUNCTIONS |= {"abs": sp.Abs, "min": sp.Min, "max": sp.Max, "sat": lambda a: sp.M
 DIGITS = 160
 # What is left of a zero in so many digits is far below, also where factors such as exp(-8750/T) are not of one size.
 SMALL = sp.Float(10, DIGITS) ** (-DIGITS // 2)
+# The bits of half the digits, and of ten more.
+HALF = int((DIGITS // 2 + 10) * 3.33)
 # Points at which the signs of arguments are looked at: a cell that holds one in sixteen is missed once in sixty times.
 DRAWN = 64
 # Points of a cell at which a rank may fall short by chance, before it is called false.
@@ -370,13 +372,16 @@ class Points:
 # Ranks, cells and trajectories.
 
 
-def value(expr, point):
-    """The value at a point: exact if it is rational, else in so many digits, and zero where none of them is certain."""
+def value(expr, point, comparable=False):
+    """The value at a point: exact if it is rational, else in so many digits, and zero where none of them is certain, as of
+    summands that cancel. One that is to be comparable has half of the digits, or there is none."""
     at = expr.xreplace(point)
     if at.is_Rational:
         return at
     at = at.evalf(DIGITS)
     if not (at.is_number and at.is_real and at.is_finite):
+        raise NoValue
+    if comparable and at.is_Float and at._prec < HALF:
         raise NoValue
     return ZERO if at.is_Float and at._prec < 64 else at
 
@@ -695,6 +700,9 @@ class Certificate:
         self.Psi = sp.Matrix(self.psi) if self.psi else sp.eye(n)
         self.at_start = dict(zip(flat(self.psi), sp.eye(n))) if self.psi else {}
         self.regressor = self.sides("phi")[1]
+        if derived.get("local"):
+            # Along a trajectory the extension is z.
+            self.regressor = self.regressor.subs(dict(zip(self.xi, self.phi)), simultaneous=True)
         self.primitive = self.sides("primitive")[1] if "primitive_1" in derived else None
         self.width = self.regressor.cols
         self.is_linear = [*derived["eta"].values()] == derived["theta"]
@@ -784,8 +792,18 @@ class Certificate:
             left = sp.Matrix([plant.along(held, rates) for held in held_0 + held_1 * eta])
         else:
             left, right = phi_0, phi_1 * eta
-        # z = xi + Psi theta, for any theta and Psi.
-        start = dict(zip(self.xi, sp.Matrix(self.phi) - self.Psi * sp.Matrix(self.theta)))
+        if derived.get("local"):
+            # To first order: the slopes by theta are those where it is zero.
+            slopes = phi_0.jacobian(self.xi) * self.Psi
+            of_theta = -phi_1 if left == phi_0 else phi_1
+            for k, difference in enumerate(flat((slopes - of_theta).tolist()), 1):
+                self.vanishes(f"regression: slope {k}", difference)
+            zero = dict.fromkeys(self.theta, 0)
+            left, right = left.subs(zero), right.subs(zero)
+            start = dict(zip(self.xi, self.phi))
+        else:
+            # z = xi + Psi theta, for any theta and Psi.
+            start = dict(zip(self.xi, sp.Matrix(self.phi) - self.Psi * sp.Matrix(self.theta)))
         for k, difference in enumerate(left - right, 1):
             self.vanishes(f"regression: row {k}", difference.subs(start, simultaneous=True))
         for symbol, back in zip(self.theta, formulas(derived["theta of eta"])):
@@ -905,8 +923,8 @@ class Certificate:
                 continue
             try:
                 values, known = rows.at(point, self.width)
-                directions = [[value(e, point) for e in direction] for direction in hidden]
-                gradients = [[value(e, point) for e in gradient] for gradient in seen]
+                directions = [[value(e, point, True) for e in direction] for direction in hidden]
+                gradients = [[value(e, point, True) for e in gradient] for gradient in seen]
             except (NoValue, ZeroDivisionError):
                 continue
             looked += 1

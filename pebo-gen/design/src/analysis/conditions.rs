@@ -111,9 +111,10 @@ impl Conditions {
         self.list_formulas(plant, &formulas, &transform)
     }
 
-    /// Lists the domain conditions of the regression, for all values of the extension, and of its way back to theta
-    /// from the functions of theta.
+    /// Lists the domain conditions of the regression, for all values of the extension, or of a local one where it is
+    /// phi(x, y); and of its way back to theta from the functions of theta.
     pub(super) fn list_regression(&mut self, plant: &Plant, regression: &Regression) -> Option<DomainCondition> {
+        let regression = &regression.with_extension(plant, &plant.transform());
         let rows = [&regression.phi_1, &regression.primitive_1].into_iter().flatten().flatten();
         let formulas = rows.chain(&regression.phi_0).chain(&regression.primitive_0).chain(&regression.eta).copied();
         let back = regression.eta_symbols.iter().copied().zip(regression.eta.iter().copied()).collect();

@@ -1,5 +1,7 @@
 //! The result of the analysis of a plant: each claim with its verdict.
 
+use std::borrow::Cow;
+
 pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
@@ -152,6 +154,9 @@ pub enum RegressionKind {
 /// Claim 3: the unknowns enter linearly.
 #[derive(Clone, Debug)]
 pub struct Regression {
+    /// True if they do to first order alone: `Phi_0` is the equation where the extension is z, and `Phi_1` its slope by
+    /// theta there.
+    pub is_local: bool,
     /// The left side.
     pub kind: RegressionKind,
     /// For each row, the positions in the plant's outputs of those whose equation it is: of a relation, all in it.
@@ -212,6 +217,20 @@ impl Regression {
     pub fn is_linear(&self, plant: &Plant) -> bool {
         self.eta.len() == plant.theta.len()
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
+    }
+
+    /// A local regression where the extension has these values, as z itself or phi on a trajectory; any other as it is.
+    #[must_use]
+    pub fn with_extension(&self, plant: &Plant, values: &[Expr]) -> Cow<'_, Self> {
+        if !self.is_local {
+            return Cow::Borrowed(self);
+        }
+        let values = plant.chi.iter().chain(&plant.xi).copied().zip(values.iter().copied().cycle()).collect();
+        let mut there = self.clone();
+        for formula in there.phi_0.iter_mut().chain(there.phi_1.iter_mut().flatten()) {
+            *formula = plant.arena.substitute(*formula, &values);
+        }
+        Cow::Owned(there)
     }
 
     /// The derivatives of the unknowns, a row for each with an entry for each component of theta; none unless there are
@@ -428,14 +447,20 @@ pub enum Excitation {
 }
 
 impl Derivation {
-    /// The domain conditions of the way from estimates back to x, beside the assumptions on y: an estimate of z (or,
-    /// where the regression has functions of theta, of these) may lie where the true one cannot.
+    /// The domain conditions of the way from estimates back to x, and of a local regression at these, beside the
+    /// assumptions on y: an estimate of z (or, where the regression has functions of theta, of these) may lie where the
+    /// true one cannot.
     pub fn conditions_on_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
         let arena = &plant.arena;
         let (mut formulas, mut estimates) = (Vec::new(), plant.z.clone());
         formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
         if let Some(regression) = &self.regression.result {
             formulas.extend(&regression.theta);
+            if regression.is_local {
+                let z: Vec<Expr> = plant.z.iter().map(|z| arena.of_symbol(*z)).collect();
+                let near = regression.with_extension(plant, &z);
+                formulas.extend(near.phi_0.iter().chain(near.phi_1.iter().flatten()));
+            }
             estimates.extend(&regression.eta_symbols);
         }
         let domain = self.domain(plant);

@@ -30,7 +30,12 @@ impl OutputSlopes {
     pub fn of(plant: &Plant, cascade: &Cascade, regression: &Regression) -> Option<Self> {
         let arena = &plant.arena;
         let outputs = regression.outputs_with_rates(plant)?;
-        let (known, factor) = at_start(plant, regression);
+        let (known, mut factor) = at_start(plant, regression);
+        if regression.is_local {
+            // The known side is all of the equation.
+            factor.iter_mut().for_each(Vec::clear);
+        }
+        let z = plant.z.iter().copied().collect();
         let equations = known.len();
         let row = |known: Expr, factor: &[Expr], is_rate: bool| -> Vec<Expr> {
             let slope = |column: usize| {
@@ -39,7 +44,7 @@ impl OutputSlopes {
                 let mut terms = factor.iter().zip(&plant.z).map(|(f, z)| arena.mul(by(*f), arena.of_symbol(*z)));
                 if is_rate {
                     terms.fold(by(known), |sum, term| arena.add(sum, term))
-                } else if terms.all(|term| arena.is_zero(term)) {
+                } else if terms.all(|term| arena.is_zero(term)) && !arena.depends_on(by(known), &z) {
                     by(known)
                 } else {
                     // Noise in a factor of the unknown is corrected as an error in a variable.
@@ -74,12 +79,14 @@ pub fn are_affine_in_outputs(plant: &Plant, cascade: &Cascade, regression: &Regr
     !terms.iter().any(|term| arena.depends_on(*term, &of))
 }
 
-/// The sides of a regression at the start of its extension, where the unknown is z.
+/// The sides of a regression at the start of its extension, where the unknown is z; those of a local one where it is z.
 fn at_start(plant: &Plant, regression: &Regression) -> (Vec<Expr>, Vec<Vec<Expr>>) {
     let arena = &plant.arena;
     let identity = plant.psi.iter().enumerate().flat_map(|(i, row)| {
         row.iter().enumerate().map(move |(j, s)| (*s, if i == j { arena.one() } else { arena.zero() }))
     });
+    let z: Vec<Expr> = plant.z.iter().map(|z| arena.of_symbol(*z)).collect();
+    let regression = regression.with_extension(plant, &z);
     let zero = plant.chi.iter().chain(&plant.xi).map(|s| (*s, arena.zero()));
     let start: BTreeMap<Symbol, Expr> = zero.chain(identity).collect();
     let factor = regression.phi_1.iter().map(|row| arena.substitute_all(row, &start)).collect();

@@ -105,10 +105,18 @@ impl Equilibrium {
 }
 
 impl Regression {
+    /// The meaning of a local one.
+    pub const LOCAL: &str = "it holds to first order at the estimate, to which the extension is moved at each sample: that \
+                             converges from a neighbourhood of the state, whose size no proof gives";
+
     /// The parameterisation in a word: over-parameterised too where functions of the author's own unknowns are among
-    /// theta.
+    /// theta, local where theta enters linearly to first order alone.
     pub fn parameterisation(&self, plant: &Plant) -> &'static str {
         let is_lifted = matches!(plant.origin, TransformOrigin::Lifted { .. });
-        if self.is_linear(plant) && !is_lifted { "linear" } else { "over-parameterised" }
+        match (self.is_local, self.is_linear(plant) && !is_lifted) {
+            (true, _) => "local",
+            (false, true) => "linear",
+            (false, false) => "over-parameterised",
+        }
     }
 }

@@ -36,7 +36,7 @@ pub use observer::{Bounds, Estimator, Form, Hold, Observer, Rebase};
 pub use recording::Recording;
 pub use spanned::{Entry, Spanned};
 pub use written::{
-    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RelationForm, Scale, Simulation,
+    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RegressionForm, Scale, Simulation,
 };
 
 #[cfg(feature = "yaml")]

@@ -95,6 +95,11 @@ impl Rebase {
         self.written().next().map(|(_, number)| number.span)
     }
 
+    /// True if it restarts after each sample.
+    pub fn is_at_each_sample(&self) -> bool {
+        self.samples.as_ref().is_some_and(|samples| samples.value.to_f64() <= 1.0)
+    }
+
     /// The written settings, with their keys.
     fn written(&self) -> impl Iterator<Item = (&'static str, &Spanned<Decimal>)> {
         let keys = [("samples", &self.samples), ("above", &self.above), ("leak", &self.leak)];

@@ -43,7 +43,7 @@ pub struct Model {
     /// The class of cascade that the author wants; either if absent.
     pub cascade_class: Option<Spanned<CascadeClass>>,
     /// The form of a regression made of a relation between the components of the transform.
-    pub relation_form: Option<Spanned<RelationForm>>,
+    pub regression_form: Option<Spanned<RegressionForm>>,
     /// Inequalities that hold where the plant operates.
     pub assume: Vec<Comparison>,
     /// The class that the plant is written by, which fills the empty fields below.
@@ -239,24 +239,27 @@ impl CascadeClass {
     }
 }
 
-/// The form of a regression made of a relation between the components of the transform.
+/// The form of a regression that a model asks for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "yaml", derive(Deserialize))]
 #[cfg_attr(feature = "yaml", serde(rename_all = "lowercase"))]
-pub enum RelationForm {
-    /// As it holds at every instant, with functions of theta among the unknowns where it is not affine.
+pub enum RegressionForm {
+    /// A relation between the components of the transform as it holds at every instant, with functions of theta among the
+    /// unknowns where it is not affine.
     Static,
-    /// Under the derivative, where constants vanish.
+    /// Such a relation under the derivative, where constants vanish.
     Differentiated,
+    /// All equations as they are, to first order at the estimate.
+    Local,
 }
 
-impl RelationForm {
+impl RegressionForm {
     /// The names in a model.
-    pub const NAMES: &[&str] = &["static", "differentiated"];
+    pub const NAMES: &[&str] = &["static", "differentiated", "local"];
 
     /// The form of that name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Static, Self::Differentiated].into_iter().find(|form| form.name() == name)
+        [Self::Static, Self::Differentiated, Self::Local].into_iter().find(|form| form.name() == name)
     }
 
     /// Its name.
@@ -264,6 +267,7 @@ impl RelationForm {
         match self {
             Self::Static => Self::NAMES[0],
             Self::Differentiated => Self::NAMES[1],
+            Self::Local => Self::NAMES[2],
         }
     }
 }

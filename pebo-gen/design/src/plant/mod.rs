@@ -26,10 +26,10 @@ mod terms;
 mod unmeasured;
 mod values;
 
-pub use crate::model::{CascadeClass, RelationForm};
+pub use crate::model::CascadeClass;
 pub use class::{Class, Proposal};
 pub use formula::lower;
 pub use matrix::Matrix;
-pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, State, TransformOrigin};
+pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, RelationForm, State, TransformOrigin};
 pub use scope::Scope;
 pub use settings::Settings;

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use crate::model::{CascadeClass, RelationForm};
+use crate::model::{CascadeClass, RegressionForm};
 use crate::source::Span;
 use pebo_cas::domain::manifold::Manifold;
 use pebo_cas::forms::tidy::functions;
@@ -36,6 +36,8 @@ pub struct Plant {
     /// The form of a regression of relations between the components of the transform that the author wants, with the
     /// span.
     pub relation_form: Option<(RelationForm, Span)>,
+    /// The place where a regression to first order is admitted, if it is.
+    pub local_regression: Option<Span>,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.
@@ -187,10 +189,35 @@ pub struct Assumption {
     pub span: Span,
 }
 
+/// The form of a regression made of a relation between the components of the transform.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RelationForm {
+    /// As it holds at every instant, with functions of theta among the unknowns where it is not affine.
+    Static,
+    /// Under the derivative, where constants vanish.
+    Differentiated,
+}
+
+impl RelationForm {
+    /// Its name in a model.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Static => RegressionForm::Static.name(),
+            Self::Differentiated => RegressionForm::Differentiated.name(),
+        }
+    }
+}
+
 impl Plant {
     /// Tests whether the author wants this form of a relation between the components of the transform.
     pub fn wants(&self, form: RelationForm) -> bool {
         self.relation_form.is_some_and(|wanted| wanted.0 == form)
+    }
+
+    /// The same plant, where equations may be used to first order at the estimate.
+    #[must_use]
+    pub fn with_local_regression(&self) -> Self {
+        Self { local_regression: Some(Span::NOWHERE), ..self.clone() }
     }
 
     /// The same plant with another transform, which was searched for: a component that fails is pointed at where the

@@ -6,14 +6,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use crate::model::{self, Comparison, Entry, Model, Spanned};
+use crate::model::{self, Comparison, Entry, Model, RegressionForm, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
 
 use super::formula::{exact, lower};
 use super::own::{Own, letter_of_unknowns};
-use super::plant::{Assumption, Formula, Output, Parameter, Plant, State, TransformOrigin, assumed};
+use super::plant::{Assumption, Formula, Output, Parameter, Plant, RelationForm, State, TransformOrigin, assumed};
 use super::scope::Scope;
 use super::{class, start, terms, values};
 
@@ -116,7 +116,19 @@ impl Plant {
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
-            relation_form: model.relation_form.as_ref().map(|form| (form.value, form.span)),
+            relation_form: model.regression_form.as_ref().and_then(|form| {
+                let relation = match form.value {
+                    RegressionForm::Static => RelationForm::Static,
+                    RegressionForm::Differentiated => RelationForm::Differentiated,
+                    RegressionForm::Local => return None,
+                };
+                Some((relation, form.span))
+            }),
+            local_regression: model
+                .regression_form
+                .as_ref()
+                .filter(|form| form.value == RegressionForm::Local)
+                .map(|form| form.span),
             proposal,
             start: start_of(&arena, model, &parameters, &outputs),
             parameters,

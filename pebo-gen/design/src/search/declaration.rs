@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::analysis::{Class, Verdict};
+use crate::analysis::{Class, Derivation, Verdict};
 use crate::plant::Plant;
 use crate::source;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
@@ -30,6 +30,8 @@ pub enum Declaration {
     Bounded(Vec<(Symbol, Expr)>),
     /// No class of cascade is asked for.
     AnyClass,
+    /// The regression may be one to first order.
+    Local,
     /// These states are left out: no output depends on them.
     Without(Vec<Symbol>),
     /// These states are unmeasured signals with an unknown rate, and are not recovered.
@@ -57,6 +59,7 @@ impl Declaration {
             }
             Self::Bounded(angles) => format!("`assume: [{}]`", listed(bounds(arena, angles))),
             Self::AnyClass => "no `class`".to_owned(),
+            Self::Local => "`regression: local`".to_owned(),
             Self::Without(states) => {
                 let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
                 format!("no {}", listed(names))
@@ -97,6 +100,11 @@ impl Declaration {
                 format!("measure `{state}` too: write {}, and the rate of `{state}` under `f_y`", self.lines(plant))
             }
             Self::AnyClass => "leave out `class`".to_owned(),
+            Self::Local => {
+                "write `regression: local`: estimates then converge from a neighbourhood of the state, whose \
+                            size no proof gives"
+                    .to_owned()
+            }
             Self::Without(states) => {
                 let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
                 let (names, them) = (names.join(", "), if states.len() == 1 { "it" } else { "them" });
@@ -110,7 +118,12 @@ impl Declaration {
         match self {
             Self::Positive(states) => signs(arena, states),
             Self::Bounded(angles) => bounds(arena, angles),
-            Self::Angles(_) | Self::AnyClass | Self::Without(_) | Self::Unmeasured(_) | Self::Measured(_) => Vec::new(),
+            Self::Angles(_)
+            | Self::AnyClass
+            | Self::Local
+            | Self::Without(_)
+            | Self::Unmeasured(_)
+            | Self::Measured(_) => Vec::new(),
         }
     }
 }
@@ -275,6 +288,22 @@ pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
         seen.extend(more);
     }
     plant.x.iter().map(|state| state.symbol).filter(|state| !seen.contains(state)).collect()
+}
+
+/// The transform with the fewest components whose regression to first order is accepted: the states, or one of these.
+pub(super) fn with_local_regression(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<Candidate> {
+    let plant = problem.plant.with_local_regression();
+    let near = Problem::of(&plant);
+    let is_open = |candidate: &&Candidate| {
+        let Derivation { cascade, left_inverse, .. } = &candidate.derivation;
+        cascade.verdict == Verdict::Proved && left_inverse.verdict == Verdict::Proved
+    };
+    let states = problem.x.iter().map(|state| problem.arena.of_symbol(*state)).collect();
+    let mut transforms: Vec<Vec<Expr>> = candidates.iter().filter(is_open).map(|c| c.plant.transform()).collect();
+    transforms.insert(0, states);
+    transforms.sort_by_key(Vec::len);
+    let local = |phi: Vec<Expr>| problem.arena.budget().share(SHARE, || Candidate::of(&near, &phi));
+    transforms.into_iter().take_while(|_| problem.goes_on()).map(local).find(Candidate::is_full)
 }
 
 /// The transform of any class, where one is asked for.

@@ -65,10 +65,17 @@ pub use words::settles;
 /// ```
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
-    let problem = Problem::of(plant);
+    // Transforms are found without a regression to first order, with which any of them would do.
+    let without_local = Plant { local_regression: None, ..plant.clone() };
+    let problem = Problem::of(&without_local);
     let mut attempts = attempted(&problem, class);
-    let (candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
-    let found = candidates.first().is_some_and(Candidate::is_full);
+    let (mut candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
+    let is_found = |candidates: &[Candidate]| candidates.first().is_some_and(Candidate::is_full);
+    if plant.local_regression.is_some() {
+        let local = declaration::with_local_regression(&problem, &candidates);
+        candidates.splice(0..0, local);
+    }
+    let found = is_found(&candidates);
     let plain = candidates.iter().any(|c| c.is_full() && c.derivation.class == Class::Pebo);
     let (affine, bound) = if plain || class == Some(Class::Gpebo) {
         (None, None)
@@ -104,6 +111,11 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let symmetry = if found { None } else { symmetry() };
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
+    let offered = || {
+        let local = || declaration::with_local_regression(&problem, &candidates);
+        let local = if plant.local_regression.is_none() { local() } else { None };
+        local.map(|local| (local, Declaration::Local))
+    };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
     // What is to be declared, or else the sensor that is lacking, and what can be had without it.
     let lacking = || {
@@ -113,7 +125,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let declared: Vec<_> = if found {
         Vec::new()
     } else {
-        without_unseen().or_else(helpful).map_or_else(lacking, |declared| vec![declared])
+        without_unseen().or_else(helpful).or_else(offered).map_or_else(lacking, |declared| vec![declared])
     };
     // A plant that lacks only a sign is as yet undecided: with its declaration there is an observer.
     let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();

@@ -44,6 +44,8 @@ pub(crate) struct Design {
     pub(crate) instants: usize,
     /// True for a generalised cascade.
     pub(crate) is_generalised: bool,
+    /// True for a regression of first order, at the extension.
+    pub(crate) is_local: bool,
     /// The periods of the outputs, 0 for one that is no angle.
     pub(crate) periods: Vec<f64>,
     /// From y, u to h, then Lambda by rows in a generalised cascade.
@@ -124,6 +126,7 @@ impl Design {
             equations: regression.phi_0.len(),
             instants,
             is_generalised: cascade.lambda.is_some(),
+            is_local: regression.is_local,
             cascade: compile(&at_sample, &[cascade.h.as_slice(), &lambda].concat())?,
             regression: compile(&regressed, &sides(&regression.phi_0, &regression.phi_1))?,
             primitive: match regression.kind {

@@ -104,6 +104,8 @@ pub(super) struct Derived<X, K, const N: usize> {
     /// In the output form: the rows of the regression with a rate, and the model's own extension, which its functions read at its
     /// start. That of the output form is another.
     output: Option<(usize, X)>,
+    /// True for a regression of first order, at the extension.
+    is_local: bool,
     /// In the output form: the indices of the outputs at whose expected values the model is evaluated, with the distance
     /// from the sample up to which they drive the rates.
     expected: Option<Vec<(usize, f64)>>,
@@ -116,6 +118,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         Self {
             expected: expected(&design.settings),
             output: design.settings.output.then(|| (design.rates(), X::new(SVector::zeros()))),
+            is_local: design.is_local,
             known: if design.is_generalised { nz + nz * nz } else { nz },
             ny: design.outputs,
             inputs: design.inputs,
@@ -150,10 +153,8 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         let inner = self.cascade(y, u);
         let Some((rows, _)) = self.output else { return inner };
         // As the runtime's `OutputForm`, whose sizes are constants.
-        let start = X::new(SVector::zeros());
-        let (rate, held) = (self.sides(&start, y, u), self.primitive(&start, y));
-        let mut inner_z = SVector::zeros();
-        (0..self.nz).for_each(|i| inner_z[i] = z[rows + i]);
+        let inner_z = self.inner(z, rows);
+        let (rate, held) = (self.affine(&inner_z, y, u), self.primitive(&X::new(SVector::zeros()), y));
         let slopes = self.output_slopes(y, u, &inner_z);
         let [known, rest] = [(rate.known, slopes.rates), (inner.h, slopes.cascade)].map(|(h, s)| h - s * held.known);
         let [factor, plain] =
@@ -185,9 +186,23 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         y
     }
 
-    /// The sides of the model's own regression; in the output form, functions of z.
+    /// The model's own coordinates, after those of outputs.
+    fn inner(&self, z: &SVector<f64, N>, outputs: usize) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| if i < self.nz { z[outputs + i] } else { 0.0 })
+    }
+
+    /// The sides of the model's own regression.
     fn sides(&self, extension: &X, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
         self.both(&mut self.regression.borrow_mut(), extension, y, u)
+    }
+
+    /// In the output form: the same as affine functions of z, those of a local one at this estimate.
+    fn affine(&self, z: &SVector<f64, N>, y: &SVector<f64, N>, u: &SVector<f64, N>) -> Sides<f64, N, N> {
+        if !self.is_local {
+            return self.sides(&X::new(SVector::zeros()), y, u);
+        }
+        let Sides { known, factor } = self.sides(&X::new(*z), y, u);
+        Sides { known: known - factor * z, factor }
     }
 
     /// Both sides of equations by a program: the known side, then the factor by rows.
@@ -198,7 +213,6 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Derived<X, K, N
         y: &SVector<f64, N>,
         u: &SVector<f64, N>,
     ) -> Sides<f64, N, N> {
-        let extension = self.output.as_ref().map_or(extension, |(_, start)| start);
         let mut values = function.evaluate(|place| match place.checked_sub(self.known) {
             None => extension.value(self.nz, place),
             Some(place) if place < self.ny => y[place],
@@ -264,6 +278,10 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         self.periods
     }
 
+    fn is_local(&self) -> bool {
+        self.is_local
+    }
+
     fn terms(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
         *y
     }
@@ -316,7 +334,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
         let mut through = SMatrix::<f64, N, N>::zeros();
         (0..rows).for_each(|row| through[(row, row)] = 1.0);
         if rows < self.nr {
-            let instant = self.sides(extension, y, u);
+            let instant = self.affine(&self.inner(&extension.parts().0, rows), y, u);
             let slopes = self.output_slopes(y, u, &SVector::zeros()).rates;
             let (known, factor) = (instant.known - slopes * held.known, instant.factor - slopes * held.factor);
             for row in rows..self.nr {
@@ -336,6 +354,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> Model<N, N, N, 
 
     fn primitive(&self, extension: &X, y: &SVector<f64, N>) -> Sides<f64, N, N> {
         if let Some(primitive) = &self.primitive {
+            let extension = self.output.as_ref().map_or(extension, |(_, start)| start);
             return self.both(&mut primitive.borrow_mut(), extension, y, &SVector::zeros());
         }
         let mut used = SVector::zeros();

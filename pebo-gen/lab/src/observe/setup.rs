@@ -108,6 +108,10 @@ impl Settings {
         if !written.has_gains() {
             return Self::of_known(request, (derivation, states), shown, problems);
         }
+        if let Some(refusal) = crate::settings::refused(request.model, derivation) {
+            problems.push(refusal);
+            return None;
+        }
         let mut section = Section { request, written, problems };
         section.operator();
         section.estimator(unknowns);
@@ -135,6 +139,7 @@ impl Settings {
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
+                _ if regression.is_local => Some(Rebase::Samples(1)),
                 Some(written) => Some(Rebase::of(written)?),
                 None => None,
             },

@@ -72,7 +72,7 @@ pub(super) fn derive(
     let begun = || beginning(&known, plant, derivation).unwrap_or_else(none);
     let mut chi_0 = frame.chi_0.clone().unwrap_or_else(begun);
     let point = completed(&known, plant, &formulas, &chi_0)?;
-    let deviations = Deviations::of(model, plant, &known, (shown, period))?;
+    let deviations = Deviations::of(model, plant, &known, (shown, period), formulas.regression.is_local)?;
     let late = late((model, plant), (derivation, &formulas.regression), (kind, period), problems).ok()?;
 
     if period.is_none()

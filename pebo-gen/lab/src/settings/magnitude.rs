@@ -16,6 +16,9 @@ const SENSOR: f64 = 1e-3;
 /// The error of the start, as a multiple of the state.
 const START: f64 = 10.0;
 
+/// The same of a local regression: the estimate begins at half the state, and converges from a neighbourhood.
+const NEAR: f64 = 1.0;
+
 /// Samples within which a constant drifts by its own magnitude.
 const SAMPLES: f64 = 1000.0;
 
@@ -50,6 +53,7 @@ impl Deviations {
         plant: &Plant,
         point: &Point,
         (shown, period): (&Shown, Option<f64>),
+        is_local: bool,
     ) -> Option<Self> {
         let arena = &plant.arena;
         let written = &model.observer;
@@ -79,7 +83,8 @@ impl Deviations {
             let recorded = || shown.deviations.get(symbol).copied();
             of(&written.sensors, *symbol).or_else(recorded).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
         };
-        let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| START * magnitude(*symbol));
+        let far = if is_local { NEAR } else { START };
+        let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| far * magnitude(*symbol));
         let drift = |state: &State| match of(&written.disturbance, state.symbol) {
             Some(deviation) => Some(deviation),
             None if silent => {

@@ -23,6 +23,7 @@ mod equations;
 mod feedthrough;
 mod kind;
 mod late;
+mod local;
 mod magnitude;
 mod point;
 #[cfg(feature = "simulate")]
@@ -37,11 +38,12 @@ pub mod tests;
 use pebo_cas::Rational;
 use pebo_design::analysis::Derivation;
 use pebo_design::model::{Decimal, Model};
-use pebo_design::plant::settings::{Limits, cannot_rebase};
+use pebo_design::plant::settings::{Limits, Rebase, cannot_rebase};
 use pebo_design::plant::{Plant, Settings};
 use pebo_design::source::Diagnostics;
 
 pub use derived::DerivedSettings;
+pub(crate) use local::refused;
 pub use shown::Shown;
 pub(crate) use start::start;
 
@@ -70,6 +72,10 @@ impl DerivedSettings {
             problems.push(cannot_rebase(&plant.name, rebase));
             return None;
         }
+        if let Some(refusal) = refused(model, derivation) {
+            problems.push(refusal);
+            return None;
+        }
         let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
         let limits = Limits::of(model, read);
         if model.observer.has_gains() {
@@ -77,8 +83,9 @@ impl DerivedSettings {
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
             let begun = Some(()).filter(|()| model.observer.extension.is_empty());
             let chi_0 = begun.and_then(|()| start(model, plant, derivation, shown)).unwrap_or(settings.chi_0);
+            let rebase = if regression.is_local { Some(Rebase::Samples(Rational::ONE)) } else { settings.rebase };
             return Some(Self {
-                settings: Settings { chi_0, limits, ..settings },
+                settings: Settings { chi_0, limits, rebase, ..settings },
                 #[cfg(feature = "simulate")]
                 known: None,
                 #[cfg(feature = "simulate")]

@@ -31,20 +31,28 @@ pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation, shown
 /// The same for a plant that starts at a known point.
 pub(super) fn beginning(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
-    let left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+    let mut left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
+    let local = derivation.regression.result.as_ref().filter(|regression| regression.is_local);
+    if let Some(regression) = local {
+        let z: Vec<Expr> = plant.z.iter().map(|z| plant.arena.of_symbol(*z)).collect();
+        let there = regression.with_extension(plant, &z);
+        left.extend(there.phi_0.iter().chain(there.phi_1.iter().flatten()));
+    }
     let phi: Vec<Expr> = plant.phi.iter().map(|phi| phi.expr).collect();
     let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
     let unknown = x.iter().copied().collect();
     let others = plant.y.iter().map(|output| output.symbol).chain(plant.u.iter().copied()).chain(plant.w.clone());
     let others = others.chain(plant.parameters.iter().map(|parameter| parameter.symbol));
+    let psi: Vec<f64> = (0..phi.len().pow(2)).map(|k| f64::from(k / phi.len() == k % phi.len())).collect();
     let missing: Vec<Symbol> = others.filter(|symbol| known.of_symbol(*symbol).is_none()).collect();
-    let around = known.with(&missing, &vec![ANY; missing.len()]);
+    let around = known.with(&missing, &vec![ANY; missing.len()]).with(&plant.psi.concat(), &psi);
     let has_value = |z: &[f64]| {
         let values = around.with(&plant.z, z).values(&left);
         values.is_some_and(|values| values.iter().all(|value| value.is_finite()))
     };
     let zeros = vec![0.0; phi.len()];
-    if has_value(&zeros) {
+    // A local regression converges from a neighbourhood: zero is far away as a rule.
+    if local.is_none() && has_value(&zeros) {
         return exact(&zeros);
     }
     let of_state = |state: &[f64]| around.with(&x, state).values(&phi).filter(|z| has_value(z)).and_then(|z| exact(&z));
@@ -58,7 +66,7 @@ pub(super) fn beginning(known: &Point, plant: &Plant, derivation: &Derivation) -
             (None, _) => true,
         })
     };
-    let origin = of_state(&vec![0.0; x.len()]);
+    let origin = if local.is_none() { of_state(&vec![0.0; x.len()]) } else { None };
     let known: Option<Vec<f64>> = x.iter().map(|state| known.of_symbol(*state)).collect();
     let near = known.into_iter().flat_map(|state| SHARES.map(|part| state.iter().map(|value| part * value).collect()));
     let signs = (0..1_usize << x.len().min(MOST_SIGNS)).map(|signs| -> Vec<f64> {

@@ -13,7 +13,9 @@ use crate::emit::definition::{
     RATE_SLOPES, SLOPES, TRANSFORM, VELOCITY,
 };
 use pebo_cas::{Arena, Expr, Relation, Symbol};
-use pebo_design::analysis::{Class, Derivation, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput};
+use pebo_design::analysis::{
+    Class, Derivation, Excitation, Fundamental, Origin, Regression, RegressionKind, UnusedOutput,
+};
 use pebo_design::plant::Plant;
 use pebo_design::program::{Cost, StagedPrograms};
 
@@ -143,7 +145,8 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
             "z = xi + Psi theta".to_owned(),
         ],
     };
-    laws.push(equation(plant, definitions));
+    let near = if definitions.regression.is_local { ", to first order in theta" } else { "" };
+    laws.push(format!("{}{near}", equation(plant, definitions)));
     laws.push("x = phi_left(z, y)".to_owned());
     if !is_linear(arena, definitions) {
         for (eta, value) in definitions.regression.eta_symbols.iter().zip(&definitions.regression.eta) {
@@ -270,7 +273,8 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     } else {
         format!("{parameterisation}, {} unknowns", regression.eta.len())
     };
-    lines.push(format!("- Regression: {kind}, {parameterisation}."));
+    let near = if regression.is_local { [": ", Regression::LOCAL].concat() } else { String::new() };
+    lines.push(format!("- Regression: {kind}, {parameterisation}{near}."));
     if let Some(identifiability) = &derivation.identifiability.result {
         let mut line = match identifiability.kind {
             Excitation::Instant if identifiability.everywhere_else => {

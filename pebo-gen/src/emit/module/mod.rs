@@ -119,10 +119,23 @@ impl Module<'_> {
         });
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let paper = self.paper();
+        let is_local = self.definitions.regression.is_local;
+        let local = is_local.then(|| {
+            quote!(
+                const LOCAL: bool = true;
+            )
+        });
+        let movable = if is_local {
+            "`phi_1` is the slope of `phi_0` where `theta` is zero: the observer has to move each estimate from `theta` \
+             into the extension."
+        } else {
+            "`phi_0` is affine in the extension with the factor `phi_1`: the observer may move a shift from the extension \
+             into `theta`."
+        };
+        let movable = doc(movable);
         let rebase = self.rebase.then(|| {
             quote! {
-                /// `phi_0` is affine in the extension with the factor `phi_1`: the observer may move a
-                /// shift from the extension into `theta`.
+                #movable
                 impl Rebase<NX, NY, NU, NZ, NR> for #type_name {}
             }
         });
@@ -148,6 +161,7 @@ impl Module<'_> {
                 const REGRESSION: Regression = Regression::#regression;
                 #instants
                 #related
+                #local
                 #(#functions)*
             }
             #own

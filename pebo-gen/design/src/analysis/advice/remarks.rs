@@ -54,6 +54,10 @@ impl Derivation {
         *self.remarks.rebase.get_or_init(|| {
             let domain = plant.domain();
             let regression = self.regression.result.as_ref();
+            // A local one has its slopes where the extension is, and has to be moved.
+            if regression.is_some_and(|regression| regression.is_local) {
+                return true;
+            }
             regression
                 .and_then(|regression| rebase_residuals(plant, self.class, regression))
                 .is_some_and(|residuals| residuals.iter().all(|e| is_zero(&plant.arena, *e, &domain)))

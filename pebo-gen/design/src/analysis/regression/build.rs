@@ -1,7 +1,7 @@
 //! The regression that equations make.
 //!
 //! In: equations `d/dt P(z, y) = R(z, y, u)`. Out: one regression of all, in theta itself where all are affine in z, else
-//! in functions of theta. It is static where no equation has a primitive, dynamic where each primitive is an output,
+//! in functions of theta; or of first order in theta. It is static where no equation has a primitive, dynamic where each primitive is an output,
 //! else implicit: the filter is linear, so that an equation without a derivative goes through it as any other does.
 
 use std::collections::BTreeSet;
@@ -13,9 +13,9 @@ use super::separation::{absorb_constants, separate};
 use super::steps::steps;
 use crate::analysis::design::{Regression, RegressionKind, Verdict};
 use crate::source::Diagnostic;
-use pebo_cas::Expr;
 use pebo_cas::forms::tidy::{proved_shortest, shortest_equal};
 use pebo_cas::tower::Obstacle;
+use pebo_cas::{Expr, Symbol};
 
 /// A reason for which equations make no regression.
 pub(super) enum Obstruction {
@@ -37,6 +37,39 @@ pub(super) fn regression(
     equations: &[Equation],
     found: &mut Vec<Diagnostic>,
 ) -> Result<Regression, Obstruction> {
+    let (kind, equations) = in_order(premises, equations);
+    let result = if equations.iter().all(|equation| equation.is_linear()) {
+        in_theta(premises, kind, &equations)
+    } else {
+        in_functions(premises, kind, &equations, found)?
+    };
+    Ok(with_unknowns_apart(premises, result))
+}
+
+/// The regression of the equations to first order in theta: each where the extension is z, with its slopes by theta there.
+pub(super) fn near_extension(premises: &Premises<'_>, equations: &[Equation]) -> Result<Regression, Obstruction> {
+    let (arena, plant) = (premises.arena(), premises.plant);
+    let (kind, equations) = in_order(premises, equations);
+    let theta = plant.theta.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
+    let mut result = Regression { is_local: true, ..empty(premises, kind, &equations, (theta, None)) };
+    for equation in equations {
+        // A primitive with an unknown would have a slope under the derivative, which moves with the estimate.
+        if premises.is_hidden(equation.rate) || arena.depends_on(equation.primitive, &premises.unknown()) {
+            return Err(Obstruction::NotAffine);
+        }
+        let slope = |z: &Symbol| premises.at_extension(premises.shortest(arena.derivative(equation.rate, *z)));
+        result.phi_0.push(premises.at_extension(equation.rate));
+        result.phi_1.push(premises.of_theta(&plant.z.iter().map(slope).collect::<Vec<Expr>>()));
+        if kind == RegressionKind::Implicit {
+            result.primitive_0.push(equation.primitive);
+            result.primitive_1.push(vec![arena.zero(); plant.theta.len()]);
+        }
+    }
+    Ok(with_unknowns_apart(premises, result))
+}
+
+/// The kind of regression that equations make, with the equations in its order: those of rates first.
+fn in_order<'a>(premises: &Premises<'_>, equations: &'a [Equation]) -> (RegressionKind, Vec<&'a Equation>) {
     let (instants, rates): (Vec<&Equation>, Vec<&Equation>) = equations.iter().partition(|e| e.is_instant(premises));
     let kind = match (rates.as_slice(), instants.as_slice()) {
         ([], _) => RegressionKind::Static,
@@ -47,17 +80,16 @@ pub(super) fn regression(
     if kind == RegressionKind::Dynamic {
         equations.sort_by(|a, b| a.outputs.cmp(&b.outputs));
     }
-    let mut result = if equations.iter().all(|equation| equation.is_linear()) {
-        in_theta(premises, kind, &equations)
-    } else {
-        in_functions(premises, kind, &equations, found)?
-    };
-    if kind == RegressionKind::Static {
-        // known + factors eta = 0, so known = -factors eta
+    (kind, equations)
+}
+
+/// The regression with its sides as its kind has them: of a static one `known + factors eta = 0` is `known = -factors eta`.
+fn with_unknowns_apart(premises: &Premises<'_>, mut regression: Regression) -> Regression {
+    if regression.kind == RegressionKind::Static {
         let negated = |e: &mut Expr| *e = premises.shortest(premises.arena().neg(*e));
-        result.phi_1.iter_mut().flatten().for_each(negated);
+        regression.phi_1.iter_mut().flatten().for_each(negated);
     }
-    Ok(result)
+    regression
 }
 
 /// Tests whether each equation is the rate of another output.
@@ -71,20 +103,15 @@ fn in_theta(premises: &Premises<'_>, kind: RegressionKind, equations: &[&Equatio
     let (arena, plant) = (premises.arena(), premises.plant);
     let is_static = kind == RegressionKind::Static;
     let theta: Vec<Expr> = plant.theta.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
-    let column = |j: usize| plant.psi.iter().map(|row| arena.of_symbol(row[j])).collect::<Vec<Expr>>();
-    let of_theta = |factors: &Vec<Expr>| match premises.cascade.lambda {
-        Some(_) => (0..plant.theta.len()).map(|j| arena.dot(factors, &column(j))).collect(),
-        None => factors.clone(),
-    };
     let known = |expr: Expr| if is_static { proved_shortest(arena, premises.domain, expr) } else { expr };
     let mut result = empty(premises, kind, equations, (theta, None));
     for equation in equations {
         let Some([of_primitive, of_rate]) = &equation.factors else { continue };
         result.phi_0.push(known(premises.at_extension(equation.rate)));
-        result.phi_1.push(of_theta(of_rate));
+        result.phi_1.push(premises.of_theta(of_rate));
         if kind == RegressionKind::Implicit {
             result.primitive_0.push(premises.at_extension(equation.primitive));
-            result.primitive_1.push(of_theta(of_primitive));
+            result.primitive_1.push(premises.of_theta(of_primitive));
         }
     }
     result
@@ -149,6 +176,7 @@ fn empty(
         primitive_1: Vec::new(),
         theta: theta.unwrap_or_else(itself),
         eta_symbols,
+        is_local: false,
         eta,
         steps: Vec::new(),
         alternative: None,

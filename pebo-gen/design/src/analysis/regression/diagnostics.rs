@@ -140,6 +140,14 @@ pub(super) fn undecided(plant: &Plant, index: usize, span: Span, obstacle: &Obst
         .help("simplify the formula, or state signs under `assume`")
 }
 
+/// Reports that there is no regression to first order either.
+pub(super) fn no_local_one(span: Span) -> Diagnostic {
+    open(span, "no identifiable regression was found to first order at the estimate".to_owned())
+        .label("`regression: local` admits one")
+        .note("it needs a left inverse, and equations whose slopes by z identify all of its components over time")
+        .help("measure another signal")
+}
+
 /// Reports that no regression has the chosen form.
 pub(super) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
     let (how, needs, other) = match form {

@@ -3,7 +3,8 @@
 //! In: the plant and its proved cascade. Out: of the selections from the pool of the plant's equations the first that
 //! makes a regression which identifies the unknowns, with all outputs that say something of them; else the refusal that
 //! says what the pool lacks. Rates come first (`f_y = A(y, u) + B(y, u) phi`, or functions of theta), then relations at
-//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined.
+//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined. Where
+//! the model asks for it, all equations to first order.
 
 mod affine_rate;
 mod build;
@@ -14,6 +15,7 @@ mod differentiated;
 mod equation;
 mod forms;
 mod implicit;
+mod local;
 mod outputs;
 mod pool;
 mod premises;
@@ -52,6 +54,11 @@ struct Tried {
 /// Proves or refutes both claims.
 pub(super) fn prove(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
     let pool = Pool::of(premises);
+    if premises.plant.local_regression.is_some()
+        && let Some(local) = local::identified(&pool)
+    {
+        return local.claims(found);
+    }
     let mut tried = Tried::default();
     let (first, others) = selection::order(premises.plant);
     for (is_first, selection) in first.iter().map(|s| (true, *s)).chain(others.iter().map(|s| (false, *s))) {
@@ -99,7 +106,9 @@ impl Tried {
         }
         let Some(mut given) = given else {
             let refuse = |found: &mut Vec<Diagnostic>| refusal::refused(pool, &failures, found);
-            return Claims::without_unknowns(limited(plant, "the regression", found, refuse));
+            let refused = limited(plant, "the regression", found, refuse);
+            found.extend(plant.local_regression.map(diagnostics::no_local_one));
+            return Claims::without_unknowns(refused);
         };
         let is_refuted = given.identifiability.verdict == Verdict::Refuted;
         let says_more =

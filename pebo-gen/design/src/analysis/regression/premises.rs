@@ -82,6 +82,16 @@ impl<'a> Premises<'a> {
         self.arena().substitute(in_z, &plant.z.iter().copied().zip(states).collect())
     }
 
+    /// The factors of theta, from those of `z = chi + theta` or `z = xi + Psi theta`.
+    pub(super) fn of_theta(&self, factors: &[Expr]) -> Vec<Expr> {
+        let psi = &self.plant.psi;
+        let column = |j: usize| psi.iter().map(|row| self.arena().of_symbol(row[j])).collect::<Vec<Expr>>();
+        match self.cascade.lambda {
+            Some(_) => (0..factors.len()).map(|j| self.arena().dot(factors, &column(j))).collect(),
+            None => factors.to_vec(),
+        }
+    }
+
     /// A formula at the left inverse, if there is one. Where that is partial, states may be left.
     pub(super) fn at_left_inverse(&self, formula: Expr) -> Option<Expr> {
         let inverse: BTreeMap<Symbol, Expr> = self.left_inverse?.x.iter().copied().collect();

@@ -36,10 +36,26 @@ pub(super) struct Trial {
 }
 
 impl Trial {
+    /// The regression of equations in theta, or in functions of theta.
     pub(super) fn of(premises: &Premises<'_>, equations: Vec<Equation>) -> Result<Self, Obstruction> {
-        let Premises { plant, domain, class, cascade, left_inverse } = *premises;
         let mut said = Vec::new();
         let built = build::regression(premises, &equations, &mut said)?;
+        Self::on(premises, equations, built, said)
+    }
+
+    /// The regression of equations to first order in theta.
+    pub(super) fn near_extension(premises: &Premises<'_>, equations: Vec<Equation>) -> Result<Self, Obstruction> {
+        let built = build::near_extension(premises, &equations)?;
+        Self::on(premises, equations, built, Vec::new())
+    }
+
+    fn on(
+        premises: &Premises<'_>,
+        equations: Vec<Equation>,
+        built: Regression,
+        mut said: Vec<Diagnostic>,
+    ) -> Result<Self, Obstruction> {
+        let Premises { plant, domain, class, cascade, left_inverse } = *premises;
         let claim = limited(plant, "the regression", &mut said, |said| {
             let claim = Claim { verdict: Verdict::Proved, result: Some(built) };
             permitted::regression(plant, class, claim, said)
@@ -49,8 +65,9 @@ impl Trial {
         };
         let mut open = Vec::new();
         let identifiability = limited(plant, "identifiability", &mut open, |open| {
-            let domain = where_valued(plant, domain, (cascade, left_inverse, &regression));
-            identifiability::prove(plant, &domain, cascade, &regression, left_inverse, open)
+            let regression = &regression.with_extension(plant, &plant.transform());
+            let domain = where_valued(plant, domain, (cascade, left_inverse, regression));
+            identifiability::prove(plant, &domain, cascade, regression, left_inverse, open)
         });
         Ok(Self { equations, regression, identifiability, said, open })
     }

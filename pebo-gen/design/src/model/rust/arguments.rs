@@ -14,7 +14,7 @@ use super::refusal::unsupported;
 use super::spans::TokenSpans;
 use crate::model::formula::Relation;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::{CascadeClass, RelationForm};
+use crate::model::written::{CascadeClass, RegressionForm};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// The keys of an attribute.
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     pub(super) title: Option<Spanned<String>>,
     pub(super) reference: Option<Spanned<String>>,
     pub(super) class: Option<Spanned<CascadeClass>>,
-    pub(super) regression: Option<Spanned<RelationForm>>,
+    pub(super) regression: Option<Spanned<RegressionForm>>,
     pub(super) assume: Vec<Chain>,
     pub(super) angles: Vec<MetaNameValue>,
     pub(super) units: Vec<Entry<Spanned<String>>>,
@@ -74,7 +74,7 @@ impl Arguments {
                 self.class = Some(choice(&text(pair, spans)?, CascadeClass::from_name, CascadeClass::NAMES)?);
             }
             ("regression", Meta::NameValue(pair)) => {
-                self.regression = Some(choice(&text(pair, spans)?, RelationForm::from_name, RelationForm::NAMES)?);
+                self.regression = Some(choice(&text(pair, spans)?, RegressionForm::from_name, RegressionForm::NAMES)?);
             }
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {

@@ -94,7 +94,7 @@ pub(super) fn read(
         title,
         reference: arguments.reference,
         cascade_class: arguments.class,
-        relation_form: arguments.regression,
+        regression_form: arguments.regression,
         parameters,
         x,
         y,

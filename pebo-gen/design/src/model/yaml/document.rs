@@ -10,7 +10,7 @@ use crate::model::delay::Delay;
 use crate::model::formula::Decimal;
 use crate::model::observer::Observer;
 use crate::model::spanned::{Entry, Spanned};
-use crate::model::written::{CascadeClass, RelationForm, Scale};
+use crate::model::written::{CascadeClass, RegressionForm, Scale};
 
 /// A text with its span: a name, a title, a formula.
 pub(super) type Text = Spanned<String>;
@@ -28,7 +28,7 @@ pub(super) struct Document {
     pub(super) u: Vec<Text>,
     pub(super) w: Vec<Text>,
     pub(super) class: Option<Spanned<CascadeClass>>,
-    pub(super) regression: Option<Spanned<RelationForm>>,
+    pub(super) regression: Option<Spanned<RegressionForm>>,
     pub(super) define: Vec<Entry<Text>>,
     pub(super) assume: Vec<Text>,
     pub(super) f_x: Vec<Entry<Text>>,

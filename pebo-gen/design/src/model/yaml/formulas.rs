@@ -34,7 +34,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         time: None,
         w: document.w,
         cascade_class: document.class,
-        relation_form: document.regression,
+        regression_form: document.regression,
         define,
         assume,
         class,

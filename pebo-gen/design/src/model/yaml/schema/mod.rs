@@ -5,7 +5,7 @@
 mod key;
 
 use crate::model::observer::{Estimator, Form};
-use crate::model::{Baseline, CascadeClass, Class, Recording, RelationForm};
+use crate::model::{Baseline, CascadeClass, Class, Recording, RegressionForm};
 
 pub(super) use key::{Key, Role, Shape};
 use key::{key, optional, required};
@@ -89,11 +89,13 @@ pub(super) const MODEL: &[Key] = &[
     ),
     optional(
         "regression",
-        Shape::Choice(RelationForm::NAMES),
+        Shape::Choice(RegressionForm::NAMES),
         "regression: static",
         "How a relation between the components of phi becomes a regression: as it holds at every instant, or \
          differentiated, which has fewer unknowns; if left out, an identity of the model is used as it is written, and a \
-         relation that was found is differentiated where that gives fewer unknowns",
+         relation that was found is differentiated where that gives fewer unknowns. With `local`, the equations of all \
+         outputs are used, those that are not linear in functions of theta to first order at the estimate, which then \
+         converges from a neighbourhood",
     ),
     optional("define", RATES, "define: {p: v2*i1}", "Names for parts of formulas, in any order"),
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]", "Inequalities that hold wherever the plant operates"),

@@ -1,0 +1,26 @@
+//! Refuses settings that a local regression does not admit.
+
+use pebo_design::analysis::Derivation;
+use pebo_design::model::Model;
+use pebo_design::source::{Code, Diagnostic};
+
+/// The refusal of a setting, where the regression is of first order at the extension: that has to be the estimate at each
+/// sample, and rows of the past are of estimates that have been left.
+pub(crate) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnostic> {
+    let regression = derivation.regression.result.as_ref()?;
+    if !regression.is_local {
+        return None;
+    }
+    let observer = &model.observer;
+    let (span, key) = match (observer.rebase.span(), observer.delay.written().next()) {
+        (Some(span), _) if !observer.rebase.is_at_each_sample() => (span, "rebase"),
+        (_, Some(delay)) => (delay.span, "delay"),
+        _ => return None,
+    };
+    let message = format!("`{key}` does not go with a local regression");
+    Some(
+        Diagnostic::error(Code::SettingConflict, span, message)
+            .note("its slopes are those at the estimate: the extension starts again from there at each sample")
+            .help(format!("remove `{key}`")),
+    )
+}
