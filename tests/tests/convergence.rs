@@ -105,6 +105,7 @@ const STEPS: &[(&str, f64, f64)] = &[
     ("boost_load", 0.0045, 0.3),
     ("boost_resistive", 2e-5, 1e-5),
     ("dc_motor", 0.0055, 0.052),
+    ("feed_axis", 26.0, 1.0),
     ("hydraulic_cylinder", 7e-4, 0.027),
     ("induction_motor", 0.003, 0.044),
     ("induction_motor_stator", 0.003, 0.044),

@@ -11,6 +11,9 @@ use pebo_runtime::nalgebra::SVector;
 fn run(file: &str, duration: f64) -> Trace {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
     let text = std::fs::read_to_string(path).expect("a model");
+    // A trace has the outputs, and not what noise makes of them.
+    let text: String =
+        text.lines().filter(|line| !line.starts_with("  noise:")).flat_map(|line| [line, "\n"]).collect();
     let derived = derive(&Source::new("model", text).expect("a text")).expect("a model of the project");
     let overrides = Overrides { duration: Some(duration), every: Some(1e-9), ..Overrides::default() };
     derived.scenario(&overrides).expect("a scenario").run().expect("a run to the end")
@@ -51,5 +54,7 @@ follow! {
         ["rx_hat", "ry_hat", "vx_hat", "vy_hat"];
     components_that_depend_on_one_another: range_only_f64::RangeOnly, "../models/range_only.yaml", 60.0, ["r"],
         ["wx", "wy"], ["px_hat", "py_hat", "cx_hat", "cy_hat"];
+    slopes_at_the_estimate: feed_axis_f64::FeedAxis, "../models/feed_axis.yaml", 10.0, ["v"], ["F"],
+        ["F_c_hat", "F_s_hat", "v_s_hat"];
     rates_at_expected_outputs: enzyme_f64::Enzyme, "models/enzyme.yaml", 10.0, ["S", "P"], ["v"], ["C_hat"];
 }

@@ -111,9 +111,11 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let symmetry = if found { None } else { symmetry() };
     let is_open = !found && !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
+    // Where two states have the same outputs, a local one would find either.
+    let is_local_of_use = plant.local_regression.is_none() && symmetry.is_none();
     let offered = || {
         let local = || declaration::with_local_regression(&problem, &candidates);
-        let local = if plant.local_regression.is_none() { local() } else { None };
+        let local = if is_local_of_use { local() } else { None };
         local.map(|local| (local, Declaration::Local))
     };
     let without_unseen = || declaration::without_unseen(&problem, class, &accepted);

@@ -9,7 +9,7 @@ use super::closure::observable::observable;
 use super::completion::decision::decided;
 use super::problem::Problem;
 use super::symmetry::{SymmetryKind, symmetry};
-use super::{SearchVerdict, solve};
+use super::{Declaration, SearchVerdict, solve};
 use crate::analysis::Class;
 use crate::model::Model;
 use crate::plant::Plant;
@@ -199,6 +199,20 @@ fn a_plant_that_lacks_a_sign_is_not_refused() {
     );
     let turned = solve(&plant("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b}"), None);
     assert_eq!((turned.verdict, turned.is_unobservable), (SearchVerdict::None, true));
+}
+
+/// An unknown that enters nonlinearly is offered a local observer, unless another state has the same outputs; where the
+/// model asks for it, it has one.
+#[test]
+fn a_local_regression_is_offered() {
+    let lines = "x: [n]\ny: [v]\nu: [F]\nassume: [v > 0]\nf_x: {n: 0}\nf_y: {v: F - exp(n*v)}";
+    let offered = solve(&plant(lines), None);
+    let declared: Vec<&Declaration> = offered.declared.iter().map(|(_, declaration)| declaration).collect();
+    assert_eq!((offered.verdict, declared), (SearchVerdict::Undecided, vec![&Declaration::Local]));
+    let asked = solve(&plant(&format!("{lines}\nregression: local")), None);
+    assert_eq!((asked.verdict, asked.declared.len()), (SearchVerdict::Found, 0));
+    let even = solve(&plant("x: [n]\ny: [v]\nu: [F]\nf_x: {n: 0}\nf_y: {v: F - cos(n*v)}"), None);
+    assert!(even.declared.iter().all(|(_, declaration)| *declaration != Declaration::Local), "{:?}", even.declared);
 }
 
 /// Surfaces with known Killing fields: three on constant curvature, one on a surface of revolution.

@@ -294,7 +294,8 @@ codes! {
         => "Section 2.2, Assumption 1 (i)"
     RegressionNonlinear "regression-nonlinear" "the outputs do not give a linear regression"
         "Claim C3: the rate of an output must be linear in the unknown parameters theta, or in functions of them \
-         that can be listed. Another phi, or an identity for a static regression, may help. The entries of f_x and \
+         that can be listed. Another phi, or an identity for a static regression, may help; with `regression: local` \
+         an observer takes the equations to first order at its estimate. The entries of f_x and \
          f_y are time derivatives: an equation for the value of an output, as V = E - R*i, stands under g_y."
         => "Section 2.2, Proposition 1, and Section 2.3"
     UnknownUpToTurns "unknown-up-to-turns" "theta is determined only up to whole turns"

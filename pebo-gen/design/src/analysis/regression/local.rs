@@ -7,14 +7,20 @@
 
 use std::collections::BTreeSet;
 
-use super::equation::Equation;
+use super::equation::{Equation, outputs_of};
 use super::pool::Pool;
 use super::trial::Trial;
+use crate::plant::Formula;
 
 /// The local regression, if it identifies theta.
 pub(super) fn identified(pool: &Pool<'_>) -> Option<Trial> {
     let (premises, plant) = (&pool.premises, pool.premises.plant);
-    let of_states: Vec<Equation> = if plant.identities.is_empty() { Vec::new() } else { pool.of_states().to_vec() };
+    // As they are written: the noise of a sensor is then in its row alone.
+    let instant = |identity: &Formula| {
+        let in_z = premises.at_left_inverse(identity.expr).filter(|in_z| !premises.is_hidden(*in_z))?;
+        Some(Equation::instant(premises, in_z, outputs_of(plant, identity)))
+    };
+    let of_states: Vec<Equation> = plant.identities.iter().filter_map(instant).collect();
     let by_value = |output: &usize| plant.y[*output].value.is_some();
     let values: BTreeSet<usize> =
         of_states.iter().flat_map(|equation| &equation.outputs).copied().filter(by_value).collect();
