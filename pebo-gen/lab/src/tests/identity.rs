@@ -15,7 +15,7 @@ use crate::closed_loop::run::LoopState;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
-use pebo_design::model::Model;
+use pebo_design::model::{Model, Observer};
 use pebo_design::plant::Plant;
 use pebo_design::program::{Interpreter, lower};
 
@@ -48,6 +48,12 @@ impl Loop {
     /// no transform knows, and without baselines and their panels.
     fn of(text: &str) -> Self {
         let mut model = read(text).unwrap();
+        // In the output form outputs are among the coordinates.
+        if !model.observer.has_gains() {
+            let extension = std::mem::take(&mut model.observer.extension);
+            let gains = read(&format!("model: m\nx: [p]\ny: [q]\nu: [tau]\nf_x: {{p: tau}}\nf_y: {{q: p}}\n{PENDULUM}")).unwrap();
+            model.observer = Observer { extension, ..gains.observer };
+        }
         if let Some(simulation) = &mut model.simulation {
             simulation.baselines.clear();
             simulation.panels.clear();

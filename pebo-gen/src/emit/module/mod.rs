@@ -126,13 +126,16 @@ impl Module<'_> {
             )
         });
         let movable = if is_local {
-            "`phi_1` is the slope of `phi_0` where `theta` is zero: the observer has to move each estimate from `theta` \
-             into the extension."
+            quote! {
+                /// `phi_1` is the slope of `phi_0` where `theta` is zero: the observer has to move each
+                /// estimate from `theta` into the extension.
+            }
         } else {
-            "`phi_0` is affine in the extension with the factor `phi_1`: the observer may move a shift from the extension \
-             into `theta`."
+            quote! {
+                /// `phi_0` is affine in the extension with the factor `phi_1`: the observer may move a
+                /// shift from the extension into `theta`.
+            }
         };
-        let movable = doc(movable);
         let rebase = self.rebase.then(|| {
             quote! {
                 #movable

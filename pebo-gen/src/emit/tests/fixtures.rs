@@ -156,6 +156,7 @@ impl Sketch {
                 witness: None,
             }),
             regression: proved(Regression {
+                is_local: false,
                 kind: self.kind,
                 sources: (0..self.phi_0.len()).map(|row| vec![row]).collect(),
                 phi_0: formulas(self.phi_0),
@@ -193,6 +194,7 @@ impl Sketch {
             class: None,
             cascade_class: None,
             relation_form: None,
+            local_regression: None,
             proposal: Proposal::default(),
             terms: BTreeMap::new(),
             conditions: Vec::new(),

@@ -3,15 +3,15 @@
 //! Shifts and scalings are of this form: those of states that occur in sums, or in products, alone. The equations for a
 //! and B are linear (the determining equations of Lie, Olver 1986, Section 2.3).
 
-use pebo_cas::domain::zero::{is_zero, refute};
+use pebo_cas::domain::zero::refute;
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
-use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
-use pebo_cas::{Expr, Relation, Symbol};
+use pebo_cas::{Expr, Symbol};
 
 use super::super::problem::Problem;
-use super::{Formulas, Symmetry, SymmetryKind, free_of_signals, moving};
+use super::found::{Symmetry, SymmetryKind};
+use super::preserved::{Formulas, for_all_parameters, free_of_signals, moving, upward};
 
 /// The shortest direction; none where there is no affine one.
 pub(super) fn direction(problem: &Problem<'_>, formulas: &Formulas) -> Result<Option<Symmetry>, Obstacle> {
@@ -50,24 +50,6 @@ pub(super) fn direction(problem: &Problem<'_>, formulas: &Formulas) -> Result<Op
     Ok(Symmetry::shortest(arena, found))
 }
 
-/// For all values of the parameters: the coefficients exist; one of them does not vanish.
-pub(super) fn for_all_parameters(
-    problem: &Problem<'_>,
-    field: &Field<'_>,
-    vector: &[Fraction],
-) -> Result<(bool, bool), Obstacle> {
-    let is_nonzero = |polynomial: &Poly| -> Result<bool, Obstacle> {
-        let shown = field.show(&field.of_polynomial(polynomial)?);
-        Ok(problem.domain.grants(problem.arena, (shown, Relation::NonZero)))
-    };
-    let (mut exists, mut moves) = (true, false);
-    for coefficient in vector.iter().filter(|coefficient| !coefficient.is_zero()) {
-        exists &= is_nonzero(coefficient.denominator())?;
-        moves |= is_nonzero(coefficient.numerator())?;
-    }
-    Ok((exists, moves))
-}
-
 /// The states that move, with their speeds.
 fn directed(
     problem: &Problem<'_>,
@@ -84,13 +66,4 @@ fn directed(
         }))
     };
     upward(problem, states.iter().enumerate().map(|(index, state)| (*state, of(index))))
-}
-
-/// The states that move, turned so that the first moves up.
-pub(super) fn upward(problem: &Problem<'_>, all: impl Iterator<Item = (Symbol, Expr)>) -> Vec<(Symbol, Expr)> {
-    let arena = problem.arena;
-    let moving: Vec<(Symbol, Expr)> = all.filter(|(_, speed)| !is_zero(arena, *speed, &problem.domain)).collect();
-    let is_downward = moving.first().is_some_and(|(_, speed)| arena.print(*speed).starts_with('-'));
-    let turned = |(state, speed)| (state, if is_downward { arena.neg(speed) } else { speed });
-    moving.into_iter().map(turned).collect()
 }

@@ -11,8 +11,8 @@ use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
 use super::super::problem::Problem;
-use super::affine::{for_all_parameters, upward};
-use super::{Formulas, Symmetry, SymmetryKind, free_of_signals, moving};
+use super::found::{Symmetry, SymmetryKind};
+use super::preserved::{Formulas, for_all_parameters, free_of_signals, moving, upward};
 
 /// The shortest vector of a basis of W; none where W is zero, or does not exist for all values of the parameters.
 pub(super) fn direction(problem: &Problem<'_>, formulas: &Formulas) -> Result<Option<Symmetry>, Obstacle> {

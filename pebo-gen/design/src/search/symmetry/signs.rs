@@ -7,7 +7,8 @@ use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Domain, Expr, Symbol};
 
 use super::super::problem::Problem;
-use super::{Formulas, MOST_STATES, Symmetry, SymmetryKind};
+use super::found::{Symmetry, SymmetryKind};
+use super::preserved::{Formulas, MOST_STATES};
 
 /// The change of the fewest states under which rates change as their states do, what is shown is the same, and the
 /// assumptions hold as before.
