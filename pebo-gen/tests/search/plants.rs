@@ -425,6 +425,16 @@ fn a_state_that_an_output_combines_with_others_is_no_unknown() {
     }
 }
 
+/// A hysteresis whose rate is non-smooth in its state, which an output shows beside an input (Bouc and Wen): the states
+/// themselves, in whose rates the output stands for them.
+#[test]
+fn a_non_smooth_rate_holds_what_an_output_shows() {
+    let lines = "x: [h]\ny: [p]\nu: [v, r]\nf_x: {h: r - abs(r)*h/4 - r*abs(h)/8}\ng_y: {p: v - h}";
+    let (_, found) = search(lines, None);
+    assert_eq!(written(lines, &found), (pebo_gen::analysis::Class::Pebo, 1));
+    assert_eq!(found.candidates[0].formulas(), ["h"]);
+}
+
 /// A state that an output tells by its value is as good as measured.
 #[test]
 fn a_state_that_an_output_tells_is_no_unknown() {

@@ -67,6 +67,11 @@ pub(super) fn attempted<'a>(problem: &'a Problem<'a>, class: Option<Class>) -> A
             attempts.candidates.extend(found.into_iter().filter(is_better));
         }
     }
+    // What the rates hold of the states, outputs that are given by value may show.
+    if !attempts.is_full() && !plant.identities.is_empty() && problem.goes_on() {
+        let states = problem.x.iter().map(|x| problem.arena.of_symbol(*x)).collect();
+        attempts.judge(Form::States, 0, Ok(states));
+    }
     if let Some(class) = class {
         attempts.candidates.retain(|candidate| candidate.derivation.class == class);
     }

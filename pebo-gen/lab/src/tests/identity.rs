@@ -51,7 +51,9 @@ impl Loop {
         // In the output form outputs are among the coordinates.
         if !model.observer.has_gains() {
             let extension = std::mem::take(&mut model.observer.extension);
-            let gains = read(&format!("model: m\nx: [p]\ny: [q]\nu: [tau]\nf_x: {{p: tau}}\nf_y: {{q: p}}\n{PENDULUM}")).unwrap();
+            let gains =
+                read(&format!("model: m\nx: [p]\ny: [q]\nu: [tau]\nf_x: {{p: tau}}\nf_y: {{q: p}}\n{PENDULUM}"))
+                    .unwrap();
             model.observer = Observer { extension, ..gains.observer };
         }
         if let Some(simulation) = &mut model.simulation {
