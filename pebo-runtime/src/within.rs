@@ -50,6 +50,11 @@ where
     const INSTANTS: usize = M::INSTANTS;
     const LINEARISED: bool = M::LINEARISED;
     const RELATED: bool = M::RELATED;
+    const LOCAL: bool = M::LOCAL;
+
+    fn is_local(&self) -> bool {
+        self.model.is_local()
+    }
 
     fn rates(&self) -> usize {
         self.model.rates()

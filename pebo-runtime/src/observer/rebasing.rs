@@ -283,11 +283,6 @@ where
         terms: &M::Terms,
         sample: &Taken<'_, M::Scalar, R::Step, NY, NU, NR>,
     ) -> Result<(), Fault> {
-        if self.model.is_local() {
-            // Its slopes are those where the extension is.
-            let estimate = self.state.estimator.estimate();
-            self.state.shift(&-estimate);
-        }
         let (extension, regression) = self.led(terms, sample)?;
         let state = &mut self.state;
         state.extension = extension;

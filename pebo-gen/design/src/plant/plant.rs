@@ -199,6 +199,15 @@ pub enum RelationForm {
 }
 
 impl RelationForm {
+    /// The form that a model asks for, if it is one of a relation.
+    pub(super) fn of(form: RegressionForm) -> Option<Self> {
+        match form {
+            RegressionForm::Static => Some(Self::Static),
+            RegressionForm::Differentiated => Some(Self::Differentiated),
+            RegressionForm::Local => None,
+        }
+    }
+
     /// Its name in a model.
     pub fn name(self) -> &'static str {
         match self {

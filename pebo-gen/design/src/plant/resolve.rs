@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use crate::model::{self, Comparison, Entry, Model, RegressionForm, Spanned};
+use crate::model::{self, Comparison, Entry, Model, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
@@ -116,19 +116,8 @@ impl Plant {
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
-            relation_form: model.regression_form.as_ref().and_then(|form| {
-                let relation = match form.value {
-                    RegressionForm::Static => RelationForm::Static,
-                    RegressionForm::Differentiated => RelationForm::Differentiated,
-                    RegressionForm::Local => return None,
-                };
-                Some((relation, form.span))
-            }),
-            local_regression: model
-                .regression_form
-                .as_ref()
-                .filter(|form| form.value == RegressionForm::Local)
-                .map(|form| form.span),
+            relation_form: regression_of(model).ok(),
+            local_regression: regression_of(model).err().flatten(),
             proposal,
             start: start_of(&arena, model, &parameters, &outputs),
             parameters,
@@ -156,6 +145,12 @@ impl Plant {
             arena,
         })
     }
+}
+
+/// The form of a relation that a model asks for; else the place where it admits a regression to first order, if it does.
+fn regression_of(model: &Model) -> Result<(RelationForm, Span), Option<Span>> {
+    let form = model.regression_form.as_ref().ok_or(None)?;
+    RelationForm::of(form.value).map(|relation| (relation, form.span)).ok_or(Some(form.span))
 }
 
 /// The names of a model with their meanings: a symbol, zero for a parameter that is given as zero, or a definition.

@@ -21,8 +21,8 @@ use crate::settings::{Prediction, SampleRows, Shown};
 pub(crate) struct Design {
     /// The states that it recovers.
     pub(crate) recovered: Vec<Symbol>,
-    /// True for a static regression.
-    pub(crate) is_static: bool,
+    /// The left side of the regression.
+    pub(crate) kind: RegressionKind,
     /// Positions in y of the outputs whose rates the dynamic regression uses.
     pub(crate) rows: Vec<usize>,
     /// The index in y of the output of each row, where the sample of any output may be missing.
@@ -156,7 +156,7 @@ impl Design {
             },
             phi_left: compile(&[&plant.z, &y], &states)?,
             recovered: inverse.x.iter().map(|(state, _)| *state).collect(),
-            is_static: regression.kind == RegressionKind::Static,
+            kind: regression.kind,
             rows: regression.rows(),
             partial: partial(plant, regression, &settings),
             outputs: plant.y.len(),

@@ -12,6 +12,7 @@ use pebo_runtime::{
 };
 
 use crate::settings::Prediction;
+use pebo_design::analysis::RegressionKind;
 use pebo_design::plant::settings::PATIENCE;
 
 use super::design::Design;
@@ -80,7 +81,7 @@ fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn DynObserver>, Faul
     if design.settings.output {
         return Ok(Box::new(PaddedObserver::<Fundamental<f64, N>, Static, N>::new(design)?));
     }
-    Ok(match (design.is_generalised, design.is_static) {
+    Ok(match (design.is_generalised, design.kind == RegressionKind::Static) {
         (false, false) => Box::new(PaddedObserver::<Integrator<f64, N>, Dynamic, N>::new(design)?),
         (false, true) => Box::new(PaddedObserver::<Integrator<f64, N>, Static, N>::new(design)?),
         (true, false) => Box::new(PaddedObserver::<Fundamental<f64, N>, Dynamic, N>::new(design)?),

@@ -9,6 +9,7 @@ mod functions;
 mod kinds;
 mod late;
 mod learning;
+mod local;
 pub(crate) mod rebasing;
 mod sampling;
 mod storm;
