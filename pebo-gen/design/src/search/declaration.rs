@@ -290,7 +290,8 @@ pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
     plant.x.iter().map(|state| state.symbol).filter(|state| !seen.contains(state)).collect()
 }
 
-/// The transform with the fewest components whose regression to first order is accepted: the states, or one of these.
+/// The transform with the fewest components, the states or one of these, whose regression to first order is accepted, or
+/// proves that nothing recovers the states.
 pub(super) fn with_local_regression(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<Candidate> {
     let plant = problem.plant.with_local_regression();
     let near = Problem::of(&plant);
@@ -303,7 +304,19 @@ pub(super) fn with_local_regression(problem: &Problem<'_>, candidates: &[Candida
     transforms.insert(0, states);
     transforms.sort_by_key(Vec::len);
     let local = |phi: Vec<Expr>| problem.arena.budget().share(SHARE, || Candidate::of(&near, &phi));
-    transforms.into_iter().take_while(|_| problem.goes_on()).map(local).find(Candidate::is_full)
+    transforms
+        .into_iter()
+        .take_while(|_| problem.goes_on())
+        .map(local)
+        .find(|local| local.is_full() || local.hides_states())
+}
+
+/// The states themselves, with a regression to first order.
+pub(super) fn of_states(problem: &Problem<'_>) -> Option<Candidate> {
+    let plant = problem.plant.with_local_regression();
+    let near = Problem::of(&plant);
+    let states: Vec<Expr> = problem.x.iter().map(|state| problem.arena.of_symbol(*state)).collect();
+    problem.goes_on().then(|| problem.arena.budget().share(SHARE, || Candidate::of(&near, &states)))
 }
 
 /// The transform of any class, where one is asked for.

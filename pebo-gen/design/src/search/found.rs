@@ -31,6 +31,23 @@ pub struct Search {
     pub tried: Vec<Attempt>,
 }
 
+impl Search {
+    /// The result of a search that ended with its first attempt.
+    pub(super) fn of(found: Candidate) -> Self {
+        Self {
+            verdict: SearchVerdict::Found,
+            candidates: vec![found],
+            symmetry: None,
+            is_unobservable: false,
+            declared: Vec::new(),
+            bound: None,
+            affine: None,
+            generalised: None,
+            tried: Vec::new(),
+        }
+    }
+}
+
 /// The verdict of a search.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum SearchVerdict {

@@ -68,6 +68,11 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     // Transforms are found without a regression to first order, with which any of them would do.
     let without_local = Plant { local_regression: None, ..plant.clone() };
     let problem = Problem::of(&without_local);
+    // The states themselves are tried first where a regression to first order is asked for.
+    let near = plant.local_regression.and_then(|_| declaration::of_states(&problem)).filter(Candidate::is_full);
+    if let Some(near) = near.filter(|near| class.is_none_or(|class| near.derivation.class == class)) {
+        return Search::of(near);
+    }
     let mut attempts = attempted(&problem, class);
     let (mut candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
     let is_found = |candidates: &[Candidate]| candidates.first().is_some_and(Candidate::is_full);
@@ -109,26 +114,9 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let excluded = excluded && again();
     let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
     let symmetry = if found { None } else { symmetry() };
-    let is_open = !found && !candidates.iter().any(Candidate::hides_states);
-    let helpful = || if is_open { declaration::helpful(&problem, &candidates, class, &accepted) } else { None };
-    // Where two states have the same outputs, a local one would find either.
+    // Where two states have the same outputs, a local regression would find either.
     let is_local_of_use = plant.local_regression.is_none() && symmetry.is_none();
-    let offered = || {
-        let local = || declaration::with_local_regression(&problem, &candidates);
-        let local = if is_local_of_use { local() } else { None };
-        local.map(|local| (local, Declaration::Local))
-    };
-    let without_unseen = || declaration::without_unseen(&problem, class, &accepted);
-    // What is to be declared, or else the sensor that is lacking, and what can be had without it.
-    let lacking = || {
-        let measured = partial::measured(&problem, class, &accepted);
-        measured.into_iter().chain(partial::partial(&problem, &candidates, class, &accepted)).collect()
-    };
-    let declared: Vec<_> = if found {
-        Vec::new()
-    } else {
-        without_unseen().or_else(helpful).or_else(offered).map_or_else(lacking, |declared| vec![declared])
-    };
+    let declared = if found { Vec::new() } else { declared(&problem, &mut candidates, class, is_local_of_use) };
     // A plant that lacks only a sign is as yet undecided: with its declaration there is an observer.
     let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();
     let is_unobservable = symmetry.as_ref().is_some_and(|symmetry| match symmetry.kind {
@@ -141,6 +129,29 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         (false, false) => SearchVerdict::Undecided,
     };
     Search { verdict, candidates, symmetry, is_unobservable, declared, bound, affine, generalised, tried }
+}
+
+/// The declarations that a plant without an accepted transform lacks, or else a sensor, and what can be had without it. A
+/// transform that proves, to first order, that nothing recovers the states comes first among the candidates then.
+fn declared(
+    problem: &Problem<'_>,
+    candidates: &mut Vec<Candidate>,
+    class: Option<Class>,
+    is_local_of_use: bool,
+) -> Vec<(Candidate, Declaration)> {
+    let is_open = !candidates.iter().any(Candidate::hides_states);
+    let helpful = || if is_open { declaration::helpful(problem, candidates, class, &accepted) } else { None };
+    let helpful = declaration::without_unseen(problem, class, &accepted).or_else(helpful);
+    if let Some(helpful) = helpful {
+        return vec![helpful];
+    }
+    let local = || declaration::with_local_regression(problem, candidates);
+    match if is_local_of_use && is_open { local() } else { None } {
+        Some(local) if local.is_full() => return vec![(local, Declaration::Local)],
+        local => candidates.splice(0..0, local).for_each(drop),
+    }
+    let measured = partial::measured(problem, class, &accepted);
+    measured.into_iter().chain(partial::partial(problem, candidates, class, &accepted)).collect()
 }
 
 /// The author's transform with functions of its components, where it has a generalised cascade and a left inverse but

@@ -12,15 +12,17 @@ pub(crate) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnost
         return None;
     }
     let observer = &model.observer;
-    let (span, key) = match (observer.rebase.span(), observer.delay.written().next()) {
-        (Some(span), _) if !observer.rebase.is_at_each_sample() => (span, "rebase"),
-        (_, Some(delay)) => (delay.span, "delay"),
+    let (span, key, note) = match (observer.rebase.span(), observer.delay.written().next()) {
+        (Some(span), _) if !observer.rebase.is_at_each_sample() => (
+            span,
+            "rebase",
+            "its slopes are those at the estimate, from which the extension starts again at each sample",
+        ),
+        (_, Some(delay)) => {
+            (delay.span, "delay", "a late sample would be explained with the slopes of an estimate that has been left")
+        }
         _ => return None,
     };
     let message = format!("`{key}` does not go with a local regression");
-    Some(
-        Diagnostic::error(Code::SettingConflict, span, message)
-            .note("its slopes are those at the estimate: the extension starts again from there at each sample")
-            .help(format!("remove `{key}`")),
-    )
+    Some(Diagnostic::error(Code::SettingConflict, span, message).note(note).help(format!("remove `{key}`")))
 }

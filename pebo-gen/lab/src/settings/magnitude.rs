@@ -43,6 +43,8 @@ pub(super) struct Deviations {
     pub(super) of_outputs: Vec<f64>,
     /// True if the author wrote none of them: the disturbances are a guess.
     pub(super) are_assumed: bool,
+    /// True for an observer that converges from a neighbourhood.
+    pub(super) is_local: bool,
 }
 
 impl Deviations {
@@ -104,6 +106,7 @@ impl Deviations {
             disturbance: plant.x.iter().map(drift).collect::<Option<_>>()?,
             of_outputs: y.iter().map(|output| of(&written.disturbance, *output).unwrap_or_default()).collect(),
             are_assumed: silent,
+            is_local,
         })
     }
 }

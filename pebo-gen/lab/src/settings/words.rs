@@ -19,6 +19,9 @@ pub struct KnownNumbers {
     pub numbers: Vec<Numbers>,
     /// The reason why no standard errors are predicted; none where they are.
     pub unpredicted: Option<String>,
+    /// True for a regression of first order, with which these numbers hold near the state.
+    #[serde(skip)]
+    pub(crate) is_local: bool,
 }
 
 /// Numbers of one kind.
@@ -97,11 +100,12 @@ impl KnownNumbers {
         let are_assumed = lacks(&y, &written.sensors);
         // A sensor that shows nothing of its noise has an assumed one.
         let are_shown = are_assumed && y.iter().all(|output| shown.deviations.contains_key(output));
+        let filter = if deviations.is_local { "an extended Kalman filter" } else { "a Kalman filter" };
         let observer = match (kind, rebased) {
-            (ObserverKind::Output, _) => "output form, a Kalman filter of the transformed plant",
-            (ObserverKind::Sampled, true) => "least squares of samples, a Kalman filter of the transformed plant",
-            (ObserverKind::Sampled, false) => "least squares of samples",
-            (ObserverKind::Filtered, _) => "least squares through a filter",
+            (ObserverKind::Output, _) => format!("output form, {filter} of the transformed plant"),
+            (ObserverKind::Sampled, true) => format!("least squares of samples, {filter} of the transformed plant"),
+            (ObserverKind::Sampled, false) => "least squares of samples".to_owned(),
+            (ObserverKind::Filtered, _) => "least squares through a filter".to_owned(),
         };
         let delays = plant.y.iter().filter_map(|output| {
             let name = arena.name(output.symbol);
@@ -114,7 +118,7 @@ impl KnownNumbers {
             observer: if adapts {
                 format!("{observer}, with as much of the disturbance as samples show")
             } else {
-                observer.to_owned()
+                observer
             },
             numbers: vec![Numbers {
                 recorded: are_shown,
@@ -130,6 +134,7 @@ impl KnownNumbers {
             ])
             .collect(),
             unpredicted: None,
+            is_local: deviations.is_local,
         }
     }
 

@@ -40,6 +40,8 @@ pub(crate) fn advise(
     let contradicted = summary.contradiction.map(|factor| {
         if summary.is_mostly_as_expected() {
             standing_out(factor, where_said)
+        } else if is_local(summary) {
+            contradicted(factor, origin, where_said).help(BEGIN_NEARER)
         } else {
             contradicted(factor, origin, where_said)
         }
@@ -47,6 +49,16 @@ pub(crate) fn advise(
     let unsettled = not_converged(summary, (estimator, origin), where_said);
     contradicted.into_iter().chain(unsettled).collect()
 }
+
+/// True if the observer converges from a neighbourhood alone.
+fn is_local(summary: &Summary) -> bool {
+    summary.known.as_ref().is_some_and(|known| known.is_local)
+}
+
+/// The help for a local regression, whose estimate may be at rest where the state is not.
+const BEGIN_NEARER: &str = "begin nearer, by `extension` under `observer`, or give the unknowns a `disturbance`: a local \
+                            regression converges from a neighbourhood, and is certain elsewhere too; if that is of no \
+                            use, raise `sensors` to what samples scatter by";
 
 /// The advice on a recording of which some samples contradict the observer's numbers, and on average by this factor.
 fn standing_out(factor: f64, where_said: Span) -> Diagnostic {
@@ -233,7 +245,8 @@ fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, di
     };
     match (summary.contradiction, slowest.expected) {
         (Some(_), _) if other.is_none() && matches!(origin, Origin::Simulated(..)) => {
-            diagnostic.note(note).help("mend the numbers of the observer first")
+            let help = if is_local(summary) { BEGIN_NEARER } else { "mend the numbers of the observer first" };
+            diagnostic.note(note).help(help)
         }
         (Some(_), _) => diagnostic.note(note + &departed).help(mended),
         (None, Some(expected)) if rms <= WITHIN * expected => {
@@ -256,6 +269,11 @@ fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, di
                         short(square)
                     ),
                     format!("`gate: 25` under `observer` refuses samples that are off by far; else {mended}"),
+                ),
+                None if is_local(summary) => (
+                    "the innovations are as expected: where the estimate is, the outputs hardly show this error"
+                        .to_owned(),
+                    mended,
                 ),
                 None => ("the innovations are as expected: the outputs do not show this error".to_owned(), mended),
             };

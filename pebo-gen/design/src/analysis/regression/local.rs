@@ -1,7 +1,9 @@
 //! The regression to first order in theta, of equations that need not be linear in functions of it.
 //!
 //! In: the pool of a plant's equations. Out: each output by its value or else by its rate, and the identities, where the
-//! extension is z, with the slopes by theta there; none unless these identify theta along almost every trajectory. An
+//! extension is z, with the slopes by theta there, if these identify theta along almost every trajectory; else with the
+//! rates of all outputs, if these do, or if they never do. Then no observer recovers theta: in each output's rate, and in
+//! its value, these are all differentials, and what they do not show no derivative of them shows. An
 //! observer that starts its extension again from the estimate at every sample then is recursive Gauss-Newton (Ljung,
 //! System identification, 1999, Section 11.4). It converges from a neighbourhood, of which no size is proved.
 
@@ -10,27 +12,37 @@ use std::collections::BTreeSet;
 use super::equation::{Equation, outputs_of};
 use super::pool::Pool;
 use super::trial::Trial;
+use crate::analysis::design::Verdict;
 use crate::plant::Formula;
 
-/// The local regression, if it identifies theta.
-pub(super) fn identified(pool: &Pool<'_>) -> Option<Trial> {
+/// The local regression, if it identifies theta or proves that nothing does.
+pub(super) fn decided(pool: &Pool<'_>) -> Option<Trial> {
     let (premises, plant) = (&pool.premises, pool.premises.plant);
     // As they are written: the noise of a sensor is then in its row alone.
     let instant = |identity: &Formula| {
         let in_z = premises.at_left_inverse(identity.expr).filter(|in_z| !premises.is_hidden(*in_z))?;
         Some(Equation::instant(premises, in_z, outputs_of(plant, identity)))
     };
-    let of_states: Vec<Equation> = plant.identities.iter().filter_map(instant).collect();
+    let instants: Vec<Equation> = plant.identities.iter().filter_map(instant).collect();
     let by_value = |output: &usize| plant.y[*output].value.is_some();
     let values: BTreeSet<usize> =
-        of_states.iter().flat_map(|equation| &equation.outputs).copied().filter(by_value).collect();
+        instants.iter().flat_map(|equation| &equation.outputs).copied().filter(by_value).collect();
     let is_known = |equation: &&Equation| equation.outputs.iter().all(|output| values.contains(output));
-    let rates = pool.unmoved().filter(|rate| !is_known(rate)).cloned();
-    let says_something = |equation: &Equation| premises.arena().depends_on(equation.rate, &premises.unknown());
-    // Where all are linear, an exact regression has them.
-    let equations: Vec<Equation> = rates.chain(of_states.iter().cloned()).filter(says_something).collect();
-    if equations.iter().all(Equation::is_linear) {
-        return None;
+    let trial = |rates: Vec<Equation>| {
+        let says_something = |equation: &Equation| premises.arena().depends_on(equation.rate, &premises.unknown());
+        let equations: Vec<Equation> = [rates, instants.clone()].concat().into_iter().filter(says_something).collect();
+        // Where all are linear, an exact regression has them.
+        let is_local = !equations.iter().all(Equation::is_linear);
+        is_local.then(|| Trial::near_extension(premises, equations).ok()).flatten()
+    };
+    let first = trial(pool.unmoved().filter(|rate| !is_known(rate)).cloned().collect())?;
+    if first.is_identified() {
+        return Some(first);
     }
-    Trial::near_extension(premises, equations).ok().filter(Trial::is_identified)
+    // A value says nothing of what moves its output, where samples of that output stand for states in the cascade.
+    let whole = trial(pool.unmoved().cloned().collect())?;
+    let has_rate = |output: usize| pool.rates.iter().any(|rate| rate.output == output && rate.equation.is_some());
+    let is_complete = (0..plant.y.len()).all(has_rate) && instants.len() == plant.identities.len();
+    let is_settled = whole.is_identified() || is_complete && whole.identifiability.verdict == Verdict::Refuted;
+    is_settled.then_some(whole)
 }

@@ -55,7 +55,7 @@ struct Tried {
 pub(super) fn prove(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
     let pool = Pool::of(premises);
     if premises.plant.local_regression.is_some()
-        && let Some(local) = local::identified(&pool)
+        && let Some(local) = local::decided(&pool)
     {
         return local.claims(found);
     }

@@ -262,7 +262,7 @@ const OBSERVER: &[Key] = &[
         "start",
         DEVIATIONS,
         "start: {i1: 5}",
-        "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out",
+        "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out (once the state with `regression: local`)",
     ),
     optional(
         "disturbance",
@@ -380,7 +380,7 @@ const OBSERVER: &[Key] = &[
         "extension",
         NUMBERS,
         "extension: [0, 0]",
-        "The dynamic extension at the start: one number for each component; if left out, zeros, or phi of a state that the plant can have where phi_left has no value at zero",
+        "The dynamic extension at the start: one number for each component; if left out, zeros, or where phi_left has no value at zero, or with `regression: local`, phi of half the state at which the simulation begins",
     ),
 ];
 
