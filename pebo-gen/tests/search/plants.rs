@@ -435,6 +435,18 @@ fn a_non_smooth_rate_holds_what_an_output_shows() {
     assert_eq!(found.candidates[0].formulas(), ["h"]);
 }
 
+/// A vehicle's heading and rate of turn from its distances to two beacons: where these stand for its place in the transform,
+/// their values say nothing of how it moves, and their rates do.
+#[test]
+fn what_values_do_not_show_their_rates_may() {
+    let lines = "parameters: {d: 20}\nx: [px, py, th, om]\ny: [r1, r2]\nu: [v]\nassume: [r1 > 0, r2 > 0, py > 0]\n\
+                 angles: {th: 2*pi}\nf_x: {px: v*cos(th), py: v*sin(th), th: om, om: 0}\n\
+                 g_y: {r1: sqrt(px^2 + py^2), r2: sqrt((px - d)^2 + py^2)}";
+    let (_, found) = search(lines, None);
+    assert_eq!(found.verdict, SearchVerdict::Undecided, "its own speed tells it where it heads");
+    assert!(!found.candidates.iter().any(pebo_gen::search::Candidate::hides_states));
+}
+
 /// A state that an output tells by its value is as good as measured.
 #[test]
 fn a_state_that_an_output_tells_is_no_unknown() {

@@ -44,6 +44,7 @@ pub(super) struct Deviations {
     /// True if the author wrote none of them: the disturbances are a guess.
     pub(super) are_assumed: bool,
     /// True for an observer that converges from a neighbourhood.
+    #[cfg(feature = "simulate")]
     pub(super) is_local: bool,
 }
 
@@ -106,6 +107,7 @@ impl Deviations {
             disturbance: plant.x.iter().map(drift).collect::<Option<_>>()?,
             of_outputs: y.iter().map(|output| of(&written.disturbance, *output).unwrap_or_default()).collect(),
             are_assumed: silent,
+            #[cfg(feature = "simulate")]
             is_local,
         })
     }

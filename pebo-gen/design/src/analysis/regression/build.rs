@@ -1,8 +1,9 @@
 //! The regression that equations make.
 //!
 //! In: equations `d/dt P(z, y) = R(z, y, u)`. Out: one regression of all, in theta itself where all are affine in z, else
-//! in functions of theta; or of first order in theta. It is static where no equation has a primitive, dynamic where each primitive is an output,
-//! else implicit: the filter is linear, so that an equation without a derivative goes through it as any other does.
+//! in functions of theta; or of first order in theta. It is static where no equation has a primitive, dynamic where each
+//! primitive is an output, else implicit: the filter is linear, so that an equation without a derivative goes through it
+//! as any other does.
 
 use std::collections::BTreeSet;
 

@@ -2,10 +2,10 @@
 //!
 //! In: the pool of a plant's equations. Out: each output by its value or else by its rate, and the identities, where the
 //! extension is z, with the slopes by theta there, if these identify theta along almost every trajectory; else with the
-//! rates of all outputs, if these do, or if they never do. Then no observer recovers theta: in each output's rate, and in
-//! its value, these are all differentials, and what they do not show no derivative of them shows. An
-//! observer that starts its extension again from the estimate at every sample then is recursive Gauss-Newton (Ljung,
-//! System identification, 1999, Section 11.4). It converges from a neighbourhood, of which no size is proved.
+//! rates of all outputs, if these do, or if they never do. Then no observer recovers theta: the differentials of all
+//! rates and values, along the plant, are those of all that outputs show. An observer that starts its extension again
+//! from the estimate at every sample is recursive Gauss-Newton (Ljung, System identification, 1999, Section 11.4). It
+//! converges from a neighbourhood, of which no size is proved.
 
 use std::collections::BTreeSet;
 

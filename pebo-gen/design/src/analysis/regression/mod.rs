@@ -3,8 +3,8 @@
 //! In: the plant and its proved cascade. Out: of the selections from the pool of the plant's equations the first that
 //! makes a regression which identifies the unknowns, with all outputs that say something of them; else the refusal that
 //! says what the pool lacks. Rates come first (`f_y = A(y, u) + B(y, u) phi`, or functions of theta), then relations at
-//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined. Where
-//! the model asks for it, all equations to first order.
+//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined. Where the model asks for it, all
+//! equations are taken to first order instead.
 
 mod affine_rate;
 mod build;
