@@ -311,14 +311,6 @@ pub(super) fn with_local_regression(problem: &Problem<'_>, candidates: &[Candida
         .find(|local| local.is_full() || local.hides_states())
 }
 
-/// The states themselves, with a regression to first order.
-pub(super) fn of_states(problem: &Problem<'_>) -> Option<Candidate> {
-    let plant = problem.plant.with_local_regression();
-    let near = Problem::of(&plant);
-    let states: Vec<Expr> = problem.x.iter().map(|state| problem.arena.of_symbol(*state)).collect();
-    problem.goes_on().then(|| problem.arena.budget().share(SHARE, || Candidate::of(&near, &states)))
-}
-
 /// The transform of any class, where one is asked for.
 fn with_any_class(
     problem: &Problem<'_>,

@@ -69,7 +69,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let without_local = Plant { local_regression: None, ..plant.clone() };
     let problem = Problem::of(&without_local);
     // The states themselves are tried first where a regression to first order is asked for.
-    let near = plant.local_regression.and_then(|_| declaration::of_states(&problem)).filter(Candidate::is_full);
+    let near = plant.local_regression.and_then(|_| declaration::with_local_regression(&problem, &[]));
+    let near = near.filter(Candidate::is_full);
     if let Some(near) = near.filter(|near| class.is_none_or(|class| near.derivation.class == class)) {
         return Search::of(near);
     }

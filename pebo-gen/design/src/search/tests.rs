@@ -211,6 +211,9 @@ fn a_local_regression_is_offered() {
     assert_eq!((offered.verdict, declared), (SearchVerdict::Undecided, vec![&Declaration::Local]));
     let asked = solve(&plant(&format!("{lines}\nregression: local")), None);
     assert_eq!((asked.verdict, asked.declared.len()), (SearchVerdict::Found, 0));
+    // A direction that is not affine, along which the outputs are the same: no search asks for it, and it is proved.
+    let hidden = solve(&plant("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: 0, b: 0}\nf_y: {y: u*exp(u*(a + b^3))}"), None);
+    assert!(hidden.symmetry.is_none() && hidden.candidates[0].hides_states(), "{:?}", hidden.symmetry);
     let even = solve(&plant("x: [n]\ny: [v]\nu: [F]\nf_x: {n: 0}\nf_y: {v: F - cos(n*v)}"), None);
     assert!(even.declared.iter().all(|(_, declaration)| *declaration != Declaration::Local), "{:?}", even.declared);
 }
