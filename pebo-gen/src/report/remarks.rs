@@ -7,6 +7,7 @@ use pebo_design::analysis::{
     Class, Derivation, Drift, Equilibrium, Fundamental, OperatingPoint, Outcome, Verdict, on_sides,
 };
 use pebo_design::plant::{Class as PlantClass, Plant};
+use pebo_design::search;
 use pebo_design::source::listed;
 
 /// A remark: its name, the values that it gives, and its lines.
@@ -34,6 +35,10 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let jumps = jumps(plant, derivation);
     remarks.extend((!jumps.is_empty()).then(|| remark("jumps", jumps)));
     remarks.extend(fundamental(plant, derivation));
+    remarks.extend(search::symmetry_beside(plant, derivation).map(|symmetry| {
+        let nearest = "estimates converge to those that they begin near: assume what tells them apart";
+        remark("other states", vec![symmetry.same_outputs(&plant.arena), nearest.to_owned()])
+    }));
     remarks.extend(rests.map(|(values, lines)| Remark { name: "operating point", values, lines }));
     remarks.extend(special(plant).map(|line| remark("values", vec![line])));
     remarks.extend(Growth::of_long(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
@@ -73,7 +78,11 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let Some((cascade, fundamental)) = cascade.and_then(|cascade| Some((cascade, cascade.fundamental?))) else {
         return Vec::new();
     };
-    let remedy = if derivation.can_rebase(plant) { REBASE } else { RESTART };
+    let remedy = match (derivation.is_local(), derivation.can_rebase(plant)) {
+        (true, _) => MOVED,
+        (false, true) => REBASE,
+        (false, false) => RESTART,
+    };
     let lines: &[&str] = match fundamental {
         Fundamental::Bounded { fades: false } => &["stays bounded: errors of theta are not amplified"],
         Fundamental::Bounded { fades: true } => &[
@@ -105,6 +114,9 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     }));
     remarks
 }
+
+/// Said of the observer of a local regression.
+const MOVED: &str = "the observer makes it the identity at every sample";
 
 /// The remedy if all memory can be carried over.
 const REBASE: &str = "remedy: `rebase: 1` under `observer`, which is set unless gains are written, makes it the identity at every sample";

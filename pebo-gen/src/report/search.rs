@@ -38,17 +38,17 @@ pub struct SearchReport {
 /// A declaration, and the transform that would be accepted with it.
 #[derive(Clone, Debug, Serialize)]
 struct AssumedReport {
-    /// The signs of states, if it is these.
+    /// The signs of states or their order, if it is these.
     assume: Vec<String>,
     /// The lines of the model file.
     declare: String,
     phi: Vec<String>,
 }
 
-/// The states that move along a direction, with their speeds; or that change their signs, with their other values.
+/// The states that move along a direction, with their speeds; or that change their signs or places, with their other values.
 #[derive(Clone, Debug, Serialize)]
 struct SymmetryReport {
-    /// `direction` or `signs`.
+    /// `direction`, `signs` or `exchange`.
     kind: &'static str,
     states: Vec<String>,
     direction: Vec<String>,

@@ -447,6 +447,12 @@ pub enum Excitation {
 }
 
 impl Derivation {
+    /// True if the regression is one to first order.
+    #[must_use]
+    pub fn is_local(&self) -> bool {
+        self.regression.result.as_ref().is_some_and(|regression| regression.is_local)
+    }
+
     /// The domain conditions of the way from estimates back to x, and of a local regression at these, beside the
     /// assumptions on y: an estimate of z (or, where the regression has functions of theta, of these) may lie where the
     /// true one cannot.

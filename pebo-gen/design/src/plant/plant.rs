@@ -286,6 +286,16 @@ impl Plant {
         plant
     }
 
+    /// The same plant where the first of these is larger than the second.
+    #[must_use]
+    pub fn with_larger(&self, larger: Symbol, smaller: Symbol) -> Self {
+        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
+        let mut plant = self.clone();
+        let expr = self.arena.sub(self.arena.of_symbol(larger), self.arena.of_symbol(smaller));
+        plant.assumptions.push(Assumption { expr, relation: Relation::Positive, span });
+        plant
+    }
+
     /// The same plant where these are between the negatives of bounds and the bounds.
     #[must_use]
     pub fn within_bounds(&self, bounds: &[(Symbol, Expr)]) -> Self {

@@ -1,6 +1,6 @@
 //! Declarations with which a transform is accepted, found by trying them.
 //!
-//! In: a search without a transform that is accepted. Out: signs of states, angles among them, bounds of these, any
+//! In: a search without a transform that is accepted. Out: signs and an order of states, angles among them, bounds of these, any
 //! class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals or
 //! its outputs, where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
 
@@ -15,6 +15,7 @@ use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
 use super::candidate::Candidate;
 use super::problem::Problem;
+use super::symmetry::Symmetry;
 
 /// The share of the remaining budget for each declaration.
 const SHARE: u64 = 2;
@@ -24,6 +25,8 @@ const SHARE: u64 = 2;
 pub enum Declaration {
     /// These states are positive.
     Positive(Vec<Symbol>),
+    /// The first state is larger than the second.
+    Larger(Symbol, Symbol),
     /// These states are angles of the period.
     Angles(Vec<(Symbol, Expr)>),
     /// These states are angles within a quarter of the period to either side of zero.
@@ -43,7 +46,7 @@ pub enum Declaration {
 impl Declaration {
     /// True if it is a smaller domain of the same plant.
     pub(super) fn is_of_domain(&self) -> bool {
-        matches!(self, Self::Positive(_) | Self::Angles(_) | Self::Bounded(_))
+        matches!(self, Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_))
     }
 
     /// The lines of the model file of the plant with it.
@@ -51,13 +54,14 @@ impl Declaration {
         let arena = &plant.arena;
         let listed = |entries: Vec<String>| entries.join(", ");
         match self {
-            Self::Positive(states) => format!("`assume: [{}]`", listed(signs(arena, states))),
+            Self::Positive(_) | Self::Larger(..) | Self::Bounded(_) => {
+                format!("`assume: [{}]`", listed(self.assumed(arena)))
+            }
             Self::Angles(angles) => {
                 let entry =
                     |(state, period): &(Symbol, Expr)| format!("{}: {}", arena.name(*state), arena.print(*period));
                 format!("`angles: {{{}}}`", listed(angles.iter().map(entry).collect()))
             }
-            Self::Bounded(angles) => format!("`assume: [{}]`", listed(bounds(arena, angles))),
             Self::AnyClass => "no `class`".to_owned(),
             Self::Local => "`regression: local`".to_owned(),
             Self::Without(states) => {
@@ -81,7 +85,7 @@ impl Declaration {
     pub fn help(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
-            Self::Positive(_) | Self::Angles(_) | Self::Bounded(_) => {
+            Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_) => {
                 format!("write {}, if that holds of the plant", self.lines(plant))
             }
             Self::Unmeasured(states) => {
@@ -117,6 +121,7 @@ impl Declaration {
     pub fn assumed(&self, arena: &Arena) -> Vec<String> {
         match self {
             Self::Positive(states) => signs(arena, states),
+            Self::Larger(larger, smaller) => vec![format!("{} > {}", arena.name(*larger), arena.name(*smaller))],
             Self::Bounded(angles) => bounds(arena, angles),
             Self::Angles(_)
             | Self::AnyClass
@@ -147,14 +152,29 @@ pub(super) type Accepted<'a> = &'a dyn Fn(&Plant, Option<Class>) -> Option<Candi
 pub(super) fn helpful(
     problem: &Problem<'_>,
     candidates: &[Candidate],
+    symmetry: Option<&Symmetry>,
     class: Option<Class>,
     accepted: Accepted<'_>,
 ) -> Option<(Candidate, Declaration)> {
     with_signs(problem, candidates)
+        .or_else(|| with_order(problem, symmetry?, class, accepted))
         .or_else(|| with_smooth_states(problem, class, accepted))
         .or_else(|| with_angles(problem, class, accepted))
         .or_else(|| with_bounds(problem, class, accepted))
         .or_else(|| with_any_class(problem, class, accepted))
+}
+
+/// The transform of the plant in which one of two states that may be exchanged is the larger.
+fn with_order(
+    problem: &Problem<'_>,
+    symmetry: &Symmetry,
+    class: Option<Class>,
+    accepted: Accepted<'_>,
+) -> Option<(Candidate, Declaration)> {
+    let (larger, smaller) = symmetry.exchanged(problem.arena).filter(|_| problem.goes_on())?;
+    let plant = problem.plant.with_larger(larger, smaller);
+    let candidate = problem.arena.budget().share(SHARE, || accepted(&plant, class))?;
+    Some((candidate, Declaration::Larger(larger, smaller)))
 }
 
 /// The transform of the plant in which the states whose signs divide its formulas are positive: friction while an axis

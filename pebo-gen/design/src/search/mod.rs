@@ -35,7 +35,7 @@ mod symmetry;
 mod tests;
 pub mod words;
 
-use crate::analysis::{Class, Derivation, Verdict};
+use crate::analysis::{Class, Derivation, Outcome, Verdict};
 use crate::plant::{Plant, TransformOrigin};
 
 use attempts::attempted;
@@ -79,6 +79,7 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let is_found = |candidates: &[Candidate]| candidates.first().is_some_and(Candidate::is_full);
     if plant.local_regression.is_some() {
         let local = declaration::with_local_regression(&problem, &candidates);
+        candidates.retain(|candidate| local.as_ref().is_none_or(|local| local.formulas() != candidate.formulas()));
         candidates.splice(0..0, local);
     }
     let found = is_found(&candidates);
@@ -115,14 +116,14 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let excluded = excluded && again();
     let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
     let symmetry = if found { None } else { symmetry() };
-    // Where two states have the same outputs, a local regression would find either.
-    let is_local_of_use = plant.local_regression.is_none() && symmetry.is_none();
-    let declared = if found { Vec::new() } else { declared(&problem, &mut candidates, class, is_local_of_use) };
-    // A plant that lacks only a sign is as yet undecided: with its declaration there is an observer.
+    let is_asked = plant.local_regression.is_some();
+    let mut declared = || declared(&problem, &mut candidates, class, symmetry.as_ref(), is_asked);
+    let declared = if found { Vec::new() } else { declared() };
+    // A plant that lacks only a sign or an order is as yet undecided: with its declaration there is an observer.
     let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();
     let is_unobservable = symmetry.as_ref().is_some_and(|symmetry| match symmetry.kind {
         SymmetryKind::Direction => true,
-        SymmetryKind::Signs => !declared.iter().any(decides),
+        SymmetryKind::Signs | SymmetryKind::Exchange => !declared.iter().any(decides),
     });
     let verdict = match (found, excluded || is_unobservable) {
         (true, _) => SearchVerdict::Found,
@@ -138,14 +139,17 @@ fn declared(
     problem: &Problem<'_>,
     candidates: &mut Vec<Candidate>,
     class: Option<Class>,
-    is_local_of_use: bool,
+    symmetry: Option<&Symmetry>,
+    local_is_asked: bool,
 ) -> Vec<(Candidate, Declaration)> {
     let is_open = !candidates.iter().any(Candidate::hides_states);
-    let helpful = || if is_open { declaration::helpful(problem, candidates, class, &accepted) } else { None };
+    let helpful = || if is_open { declaration::helpful(problem, candidates, symmetry, class, &accepted) } else { None };
     let helpful = declaration::without_unseen(problem, class, &accepted).or_else(helpful);
     if let Some(helpful) = helpful {
         return vec![helpful];
     }
+    // Where two states have the same outputs, a local regression would find either.
+    let is_local_of_use = !local_is_asked && symmetry.is_none();
     let local = || declaration::with_local_regression(problem, candidates);
     match if is_local_of_use && is_open { local() } else { None } {
         Some(local) if local.is_full() => return vec![(local, Declaration::Local)],
@@ -171,6 +175,16 @@ fn accepted(plant: &Plant, class: Option<Class>) -> Option<Candidate> {
     let problem = Problem::of(plant);
     let candidates = attempted(&problem, class).candidates;
     candidates.into_iter().next().filter(Candidate::is_full)
+}
+
+/// A symmetry of a plant whose local observer is accepted: its estimate goes to the nearer of states with the same
+/// outputs.
+#[must_use]
+pub fn symmetry_beside(plant: &Plant, derivation: &Derivation) -> Option<Symmetry> {
+    if derivation.outcome != Outcome::Accepted || !derivation.is_local() {
+        return None;
+    }
+    plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&Problem::of(plant))).ok().flatten()
 }
 
 /// The share of the remaining budget for products of the components of the plant's own transform.

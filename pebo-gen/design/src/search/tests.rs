@@ -9,7 +9,7 @@ use super::closure::observable::observable;
 use super::completion::decision::decided;
 use super::problem::Problem;
 use super::symmetry::{SymmetryKind, symmetry};
-use super::{Declaration, SearchVerdict, solve};
+use super::{Declaration, SearchVerdict, solve, symmetry_beside};
 use crate::analysis::Class;
 use crate::model::Model;
 use crate::plant::Plant;
@@ -172,6 +172,18 @@ fn symmetries_are_those_that_no_output_shows() {
             "x: [a, b]\ny: [q]\nf_x: {a: (5*a - b)/2, b: (a + 3*b)/2}\nf_y: {q: a - b}\nidentities: [a - b]",
             Some("a 1, b 1"),
         ),
+        // Two tanks of the same size, two constants, two pairs of coordinates; tanks that differ, and an order of constants.
+        (
+            "x: [a, b]\ny: [q]\nassume: [a > 0, b > 0]\nf_x: {a: q - sqrt(a), b: q - sqrt(b)}\nf_y: {q: a^3 + b^3}",
+            Some("a to b, b to a"),
+        ),
+        ("x: [a, b]\ny: [q]\nu: [u]\nf_x: {a: 0, b: 0}\nf_y: {q: exp(a*u) + exp(b*u)}", Some("a to b, b to a")),
+        (
+            "x: [a, b, c, d]\ny: [q, r]\nu: [u]\nf_x: {a: u, b: u^2, c: u, d: u^2}\nf_y: {q: a^3 + c^3, r: a*b + c*d}",
+            Some("a to c, b to d, c to a, d to b"),
+        ),
+        ("x: [a, b]\ny: [q]\nf_x: {a: q - a, b: q - 2*b}\nf_y: {q: a^3 + b^3}", None),
+        ("x: [a, b]\ny: [q]\nu: [u]\nassume: [a > b]\nf_x: {a: 0, b: 0}\nf_y: {q: exp(a*u) + exp(b*u)}", None),
         // Of an output without an equation nothing is known.
         ("x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: a - b}", None),
     ];
@@ -179,7 +191,7 @@ fn symmetries_are_those_that_no_output_shows() {
         let plant = plant(lines);
         let found = symmetry(&Problem::of(&plant)).unwrap();
         let shown = found.map(|found| {
-            let verb = if found.kind == SymmetryKind::Signs { " to" } else { "" };
+            let verb = if found.kind == SymmetryKind::Direction { "" } else { " to" };
             let of = |(state, entry): &(Symbol, Expr)| {
                 format!("{}{verb} {}", plant.arena.name(*state), plant.arena.print(*entry))
             };
@@ -197,6 +209,11 @@ fn a_plant_that_lacks_a_sign_is_not_refused() {
         (lacking.verdict, lacking.declared.len(), lacking.is_unobservable),
         (SearchVerdict::Undecided, 1, false)
     );
+    let alike = solve(&plant("x: [a, b]\ny: [q, r]\nf_x: {a: 0, b: 0}\nf_y: {q: a + b, r: a*b}"), None);
+    let declared: Vec<String> = alike.declared.iter().map(|(found, order)| order.lines(&found.plant)).collect();
+    assert_eq!((alike.verdict, declared), (SearchVerdict::Undecided, vec!["`assume: [a > b]`".to_owned()]));
+    let same = solve(&plant("x: [a, b]\ny: [q]\nu: [u]\nf_x: {a: 0, b: 0}\nf_y: {q: exp(a*u) + exp(b*u)}"), None);
+    assert_eq!((same.verdict, same.is_unobservable), (SearchVerdict::None, true));
     let turned = solve(&plant("x: [a, b]\ny: [r]\nf_x: {a: b*r, b: -2*a*r}\nf_y: {r: a*b}"), None);
     assert_eq!((turned.verdict, turned.is_unobservable), (SearchVerdict::None, true));
 }
@@ -211,6 +228,16 @@ fn a_local_regression_is_offered() {
     assert_eq!((offered.verdict, declared), (SearchVerdict::Undecided, vec![&Declaration::Local]));
     let asked = solve(&plant(&format!("{lines}\nregression: local")), None);
     assert_eq!((asked.verdict, asked.declared.len()), (SearchVerdict::Found, 0));
+    // What its estimate may converge to instead is told beside it.
+    let alike = "x: [a, b]\ny: [q]\nu: [u]\nregression: local\nf_x: {a: 0, b: 0}\nf_y: {q: exp(a*u) + exp(b*u)}";
+    let beside = |lines: &str| {
+        let near = plant(lines);
+        let found = solve(&near, None).candidates.swap_remove(0);
+        assert!(found.is_full(), "{lines}");
+        symmetry_beside(&found.plant, &found.derivation).map(|symmetry| symmetry.kind)
+    };
+    assert_eq!(beside(alike), Some(SymmetryKind::Exchange));
+    assert_eq!(beside(&format!("{alike}\nassume: [a > b]")), None);
     // A direction that is not affine, along which the outputs are the same: no search asks for it, and it is proved.
     let hidden = solve(&plant("x: [a, b]\ny: [y]\nu: [u]\nf_x: {a: 0, b: 0}\nf_y: {y: u*exp(u*(a + b^3))}"), None);
     assert!(hidden.symmetry.is_none() && hidden.candidates[0].hides_states(), "{:?}", hidden.symmetry);

@@ -264,6 +264,13 @@ impl Search {
 
     /// The advice where no declaration was found that helps.
     fn general_help(&self, arena: &Arena) -> String {
+        if let Some((larger, smaller)) = self.symmetry.as_ref().and_then(|symmetry| symmetry.exchanged(arena)) {
+            return format!(
+                "assume which is the larger if it is known, as `assume: [{} > {}]`, or measure another signal",
+                arena.name(larger),
+                arena.name(smaller)
+            );
+        }
         let signed = self.symmetry.as_ref().filter(|symmetry| symmetry.kind == SymmetryKind::Signs);
         match signed.and_then(|symmetry| symmetry.states.first()) {
             Some((state, _)) => format!(

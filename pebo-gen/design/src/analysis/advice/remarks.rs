@@ -29,9 +29,12 @@ impl Derivation {
         self.remarks.operating_point.get_or_init(|| Equilibrium::of(plant, self)).as_ref()
     }
 
-    /// The components of the extension that a constant bias makes run away; none without a proved cascade, or where
-    /// there is no such component.
+    /// The components of the extension that a constant bias makes run away; none without a proved cascade, where there is
+    /// no such component, or where the extension is moved to the estimate at each sample.
     pub fn drift(&self, plant: &Plant) -> Option<&Drift> {
+        if self.is_local() {
+            return None;
+        }
         let found = || Drift::of(plant, self).filter(|drift| !drift.integrators.is_empty());
         self.remarks.drift.get_or_init(found).as_ref()
     }
@@ -53,11 +56,11 @@ impl Derivation {
     pub fn can_rebase(&self, plant: &Plant) -> bool {
         *self.remarks.rebase.get_or_init(|| {
             let domain = plant.domain();
-            let regression = self.regression.result.as_ref();
             // A local one has its slopes where the extension is, and has to be moved.
-            if regression.is_some_and(|regression| regression.is_local) {
+            if self.is_local() {
                 return true;
             }
+            let regression = self.regression.result.as_ref();
             regression
                 .and_then(|regression| rebase_residuals(plant, self.class, regression))
                 .is_some_and(|residuals| residuals.iter().all(|e| is_zero(&plant.arena, *e, &domain)))

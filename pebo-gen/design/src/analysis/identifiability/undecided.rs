@@ -35,13 +35,21 @@ pub(super) fn open(plant: &Plant, obstacle: &Obstacle, found: &mut Vec<Diagnosti
     Claim { verdict: Verdict::Undecided, result: None }
 }
 
-/// The regression leaves unknowns unseen, but there are equations that it could not use.
-pub(in crate::analysis) fn not_all_used(plant: &Plant) -> Diagnostic {
+/// The regression leaves unknowns unseen, but there are equations that it could not use: `used` has the outputs of each
+/// of its own.
+pub(in crate::analysis) fn not_all_used(plant: &Plant, used: &[Vec<usize>]) -> Diagnostic {
+    let is_left_out = |output: &usize| !used.iter().any(|own| own.contains(output));
+    let names = (0..plant.y.len()).filter(is_left_out).map(|output| plant.arena.name(plant.y[output].symbol));
+    let mut left_out: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    if left_out.is_empty() {
+        left_out.push("identities of the plant".to_owned());
+    }
+    let left_out = left_out.join(", ");
     Diagnostic::error(
         Code::IdentifiabilityUndecided,
         at_phi(plant),
         "it could not be decided whether the unknowns can be identified",
     )
-    .note("this regression does not identify all unknowns, but it leaves outputs or identities of the plant unused")
+    .note(format!("this regression does not identify all unknowns, but it leaves {left_out} unused"))
     .help("measure another output, or write what relates phi to the outputs under `identities`")
 }

@@ -116,7 +116,7 @@ impl Tried {
         if let Some(strengthened) = strengthened.filter(says_more) {
             given = strengthened;
         } else if is_refuted && !is_complete && rest.get().is_some() {
-            given.open = vec![not_all_used(plant)];
+            given.open = vec![not_all_used(plant, &given.regression.sources)];
             given.identifiability = Claim { verdict: Verdict::Undecided, result: None };
         }
         given.claims(found)

@@ -22,6 +22,8 @@ pub enum SymmetryKind {
     Direction,
     /// The states change their signs.
     Signs,
+    /// The states change their places.
+    Exchange,
 }
 
 impl SymmetryKind {
@@ -31,6 +33,7 @@ impl SymmetryKind {
         match self {
             Self::Direction => "direction",
             Self::Signs => "signs",
+            Self::Exchange => "exchange",
         }
     }
 }
@@ -39,6 +42,12 @@ impl Symmetry {
     /// The shortest of several.
     pub(super) fn shortest(arena: &Arena, found: Vec<Self>) -> Option<Self> {
         found.into_iter().min_by_key(|symmetry| symmetry.entries(arena).join(", ").len())
+    }
+
+    /// The first two states that are exchanged.
+    pub(in crate::search) fn exchanged(&self, arena: &Arena) -> Option<(Symbol, Symbol)> {
+        let (state, other) = self.states.first().filter(|_| self.kind == SymmetryKind::Exchange)?;
+        Some((*state, arena.as_symbol(*other)?))
     }
 
     /// The speeds or values of the states that change.
@@ -50,21 +59,30 @@ impl Symmetry {
     /// The symmetry in a line.
     #[must_use]
     pub fn sentence(&self, arena: &Arena) -> String {
+        let them = if self.states.len() == 1 { "it" } else { "them" };
+        let unless = match (self.kind, self.states.len()) {
+            (SymmetryKind::Direction, _) => "",
+            (SymmetryKind::Signs, 1) => " unless its sign is known",
+            (SymmetryKind::Signs, _) => " unless one of the signs is known",
+            (SymmetryKind::Exchange, _) => " unless their order is known",
+        };
+        format!("{}: no observer recovers {them}{unless}: proved", self.same_outputs(arena))
+    }
+
+    /// The states with the same outputs.
+    #[must_use]
+    pub fn same_outputs(&self, arena: &Arena) -> String {
         let names: Vec<String> = self.states.iter().map(|(state, _)| arena.name(*state)).collect();
         let names_listed = listed(names.iter().map(String::as_str));
-        let them = if names.len() == 1 { "it" } else { "them" };
         let signals = if self.with_signals { ", and unmeasured signals with them" } else { "" };
         let change = match (self.kind, names.len()) {
             (SymmetryKind::Direction, 1) => format!("{names_listed} moves along ({})", self.entries(arena).join(", ")),
             (SymmetryKind::Direction, _) => format!("{names_listed} move along ({})", self.entries(arena).join(", ")),
             (SymmetryKind::Signs, 1) => format!("{names_listed} changes its sign"),
             (SymmetryKind::Signs, _) => format!("{names_listed} change their signs"),
+            (SymmetryKind::Exchange, 2) => format!("{names_listed} are exchanged"),
+            (SymmetryKind::Exchange, _) => format!("{names_listed} become ({})", self.entries(arena).join(", ")),
         };
-        let unless = match (self.kind, names.len()) {
-            (SymmetryKind::Direction, _) => "",
-            (SymmetryKind::Signs, 1) => " unless its sign is known",
-            (SymmetryKind::Signs, _) => " unless one of the signs is known",
-        };
-        format!("the outputs are the same where {change}{signals}: no observer recovers {them}{unless}: proved")
+        format!("the outputs are the same where {change}{signals}")
     }
 }

@@ -10,7 +10,8 @@ use pebo_cas::{Expr, Relation, Symbol};
 
 use super::super::problem::Problem;
 
-/// A plant of n states has n + n^2 coefficients of a direction, and 2^n - 1 changes of signs.
+/// A plant of n states has n + n^2 coefficients of a direction, and 2^n - 1 changes of signs; of its exchanges most end
+/// at the first formula.
 pub(super) const MOST_STATES: usize = 12;
 
 /// The formulas of a plant that a symmetry preserves.
@@ -36,6 +37,12 @@ impl Formulas {
             shown: shown.map(|formula| formula.expr).collect(),
         };
         (!is_open && formulas.states.len() <= MOST_STATES).then_some(formulas)
+    }
+
+    /// The rate of a state.
+    pub(super) fn rate(&self, state: Symbol) -> Option<Expr> {
+        let at = self.states.iter().position(|own| *own == state)?;
+        Some(self.rates[at])
     }
 
     /// The rates, then what the outputs show.
