@@ -13,6 +13,7 @@ use super::cells::{Cell, MOST_CELLS, Side};
 use super::manifold::Manifold;
 use super::reducible::{Factors, factors};
 use super::zero::is_zero;
+use crate::graph::conditions::Regularity;
 use crate::graph::expr::{Expr, Symbol};
 use crate::tower::Obstacle;
 use crate::{Arena, Domain, Relation};
@@ -112,7 +113,24 @@ impl OpenCell {
         if let Some(equation) = there.manifold.coupled(arena) {
             return Err(Obstacle::Unsolved(arena.print(equation)));
         }
-        Ok(Finer::Whole(Box::new(Cell { domain: there, sides: self.cell.sides })))
+        let shorter = self.without_excluded_factors(arena);
+        if shorter == self.equations {
+            return Ok(Finer::Whole(Box::new(Cell { domain: there, sides: self.cell.sides })));
+        }
+        let manifold = manifold(&[shorter.as_slice(), &self.walls].concat());
+        let domain = Domain { manifold, ..self.cell.domain.clone() };
+        Ok(Finer::Whole(Box::new(Cell { domain, sides: self.cell.sides })))
+    }
+
+    /// The equations without factors that have no zeros in the cell: a point drawn on `r*u = 0` at `r > 0` must not be
+    /// one of `r = 0`. An equation with a denominator is solved as it stands.
+    fn without_excluded_factors(&self, arena: &Arena) -> Vec<Expr> {
+        let is_plain = |equation: Expr| arena.domain_conditions(&[equation], Regularity::Defined).is_empty();
+        let shorter = |equation: &Expr| match factors(arena, &self.cell.domain, *equation) {
+            Ok(Factors::Several(mut ways)) if ways.len() == 1 && is_plain(*equation) => ways.remove(0),
+            _ => vec![*equation],
+        };
+        self.equations.iter().flat_map(shorter).collect()
     }
 
     /// The cells on both sides of a divider, and on it.
@@ -168,6 +186,23 @@ mod tests {
         let sides = there.distinct_sides(arena, &Domain::default()).into_iter();
         let sides = sides.map(|(e, side)| format!("{} {}", arena.print(e), side.sign()));
         equations.chain(sides).collect::<Vec<_>>().join(", ")
+    }
+
+    #[test]
+    fn components_have_points_where_a_factor_of_an_equation_is_excluded() {
+        let arena = Arena::new();
+        let [r, u, v] = ["r", "u", "v"].map(|name| arena.variable(name));
+        let mut domain = Domain::default();
+        domain.facts.assume(r, Relation::Positive);
+        let groups: Vec<BTreeSet<Symbol>> =
+            [r, u, v].iter().map(|e| arena.as_symbol(*e).into_iter().collect()).chain([BTreeSet::new()]).collect();
+        let factored = arena.mul(r, arena.sub(u, v));
+        let expanded = arena.sub(arena.mul(r, u), arena.mul(r, v));
+        for equation in [arena.mul(r, u), factored, expanded] {
+            let cells = domain.components(&arena, &[equation], &[], &groups).unwrap();
+            let has_point = |cell: &Cell| cell.domain.points(&arena, &[r, u]).next().is_some();
+            assert_eq!((cells.len(), cells.iter().all(has_point)), (1, true), "{}", arena.print(equation));
+        }
     }
 
     #[test]

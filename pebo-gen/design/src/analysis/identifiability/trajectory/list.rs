@@ -51,7 +51,13 @@ impl<'a> List<'a> {
         self.is_complete &= zero_set.all;
         let held = self.problem.held(&family.set.condition.still);
         for zero in zero_set.zeros.into_iter().chain(zero_set.constants) {
-            self.is_complete &= self.add_zero(&family.set, zero, &held).unwrap_or(false);
+            match self.add_zero(&family.set, zero, &held) {
+                Ok(is_complete) => self.is_complete &= is_complete,
+                Err(_) if self.problem.may_remain(zero, &held) && self.problem.may_hide_more(family, zero) => {
+                    self.leave_open(&family.set, Some(zero));
+                }
+                Err(_) => self.is_complete = false,
+            }
         }
     }
 

@@ -6,9 +6,10 @@ use std::collections::BTreeSet;
 use crate::analysis::design::Still;
 use crate::analysis::identifiability::flow::{Flow, only_signal, varies, without_psi};
 use crate::analysis::identifiability::singular::{Volume, ZeroSet};
+use pebo_cas::linear::determinant::largest_minors;
 use pebo_cas::linear::rank::{full_rank_throughout, proved_rank};
-use pebo_cas::tower::{Field, Obstacle};
-use pebo_cas::{Domain, Expr, Relation, Symbol};
+use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::family::Family;
 use crate::analysis::identifiability::observation::{Observation, free_columns};
@@ -34,13 +35,8 @@ impl ObservabilityProblem<'_> {
         }
         let zero_set = |rows: &[Vec<Expr>]| Volume::of(arena, domain, rows)?.zero_set(self.plant, domain);
         // The first rows are the shortest: where they suffice everywhere, the others say nothing.
-        let mut first: Vec<Vec<Expr>> = Vec::new();
-        for row in rows.iter().filter(|_| rows.len() > columns.len()) {
-            let longer = [first.as_slice(), std::slice::from_ref(row)].concat();
-            if longer.len() <= columns.len() && proved_rank(arena, domain, &longer, columns.len()) == longer.len() {
-                first = longer;
-            }
-        }
+        let is_longer = rows.len() > columns.len();
+        let first = if is_longer { independent(arena, domain, &rows, columns.len()) } else { Vec::new() };
         let is_square = first.len() == columns.len();
         let of_first = is_square.then(|| zero_set(&first)).and_then(Result::ok).filter(ZeroSet::are_none);
         of_first.map_or_else(|| zero_set(&rows), Ok)
@@ -89,6 +85,22 @@ impl ObservabilityProblem<'_> {
         let flow = Flow::along(self.plant, self.domain, self.cascade, held);
         only_signal(self.plant, zero).is_some()
             || flow.is_ok_and(|flow| self.divides(zero, flow.rate(&self.plant.arena, zero)))
+    }
+
+    /// Tests whether a family may hide more where a formula is zero: it divides all minors of rows of the family's rank.
+    pub(super) fn may_hide_more(&self, family: &Family, zero: Expr) -> bool {
+        let Family { set, observed, .. } = family;
+        let (arena, domain) = (&self.plant.arena, &set.domain);
+        let minors = || -> Result<Vec<Expr>, Obstacle> {
+            let rows = independent(arena, domain, &observed.stack, self.unknowns());
+            let field = Field::on(arena, domain, &rows.concat())?;
+            let fractions = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect();
+            let rows = rows.iter().map(fractions).collect::<Result<Vec<Vec<Fraction>>, Obstacle>>()?;
+            let minors = largest_minors(&field, &rows)?;
+            minors.iter().map(|minor| Ok(field.show(&field.of_polynomial(minor)?))).collect()
+        };
+        let vanishes = |minor: Expr| self.on(domain).divides(zero, minor);
+        minors().map_or(true, |minors| minors.into_iter().all(vanishes))
     }
 
     fn divides(&self, zero: Expr, expr: Expr) -> bool {
@@ -162,4 +174,16 @@ impl ObservabilityProblem<'_> {
         };
         Ok(Some(families.iter().any(is_further)))
     }
+}
+
+/// The first rows that are independent at a point.
+fn independent(arena: &Arena, domain: &Domain, rows: &[Vec<Expr>], columns: usize) -> Vec<Vec<Expr>> {
+    let mut first: Vec<Vec<Expr>> = Vec::new();
+    for row in rows {
+        let longer = [first.as_slice(), std::slice::from_ref(row)].concat();
+        if longer.len() <= columns && proved_rank(arena, domain, &longer, columns) == longer.len() {
+            first = longer;
+        }
+    }
+    first
 }

@@ -1,28 +1,26 @@
 //! Identifiability at equilibria.
 //!
-//! In: a regression whose unknowns are identifiable with all inputs constant. Out: added to its trajectories, the
+//! In: a regression whose unknowns are identifiable. Out: added to its trajectories, the
 //! identifiability on each component of the equilibria, cut into the cells on which the rows are analytic. An
 //! equilibrium is a point at which every rate vanishes. "At rest" is a statement on points that were found: with no
 //! equilibrium, or none that was found, nothing is said.
 
 use crate::analysis::design::{BlindTrajectory, Still, Trajectories};
 
-use super::family::Family;
 use super::list::List;
 use crate::analysis::identifiability::problem::{ObservabilityProblem, SHARE_OF_REMARKS};
 
 /// Adds to the trajectories of a regression those at equilibria.
 pub(in crate::analysis::identifiability) fn add(trajectories: &mut Trajectories, problem: &ObservabilityProblem<'_>) {
-    let Some(by_itself) = trajectories.by_itself else { return };
     let mut list = List::new(problem, &trajectories.blind);
     let identified = problem.plant.arena.budget().share(SHARE_OF_REMARKS, || problem.at_rest(&mut list));
     let is_complete = list.is_complete;
     let (hidden, mut open): (Vec<_>, Vec<_>) = list.statements().into_iter().partition(BlindTrajectory::is_decided);
     // With constant inputs as much is hidden as at an equilibrium, or less.
-    if !by_itself {
+    if trajectories.by_itself == Some(false) {
         open.clear();
     }
-    trajectories.at_rest = identified && by_itself;
+    trajectories.at_rest = identified && trajectories.by_itself == Some(true);
     trajectories.everywhere &= is_complete || !identified;
     trajectories.blind.splice(0..0, hidden);
     trajectories.blind.extend(open);
@@ -33,12 +31,9 @@ impl ObservabilityProblem<'_> {
     fn at_rest(&self, list: &mut List<'_>) -> bool {
         let (whole, held) = (self.whole(Still::Plant), self.held(&Still::Plant));
         let Ok(families) = self.equilibria() else {
+            // What is hidden while the signals are constant is so at equilibria, but more may be: these are no others.
             list.is_complete = false;
-            // What is hidden while the signals are constant is so at equilibria too.
-            match self.solve_along(self.domain, &held) {
-                Ok(observed) if !observed.is_full() => list.add(&Family { set: whole, observed, moves: false }),
-                _ => list.leave_open(&whole, None),
-            }
+            list.leave_open(&whole, None);
             return false;
         };
         if families.iter().all(|family| family.hides_as(&families[0])) {

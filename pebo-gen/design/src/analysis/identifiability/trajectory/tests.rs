@@ -270,6 +270,19 @@ fn equilibria_are_those_of_the_plant() {
 }
 
 /// Of `|q|*b = v` each side has its own zeros, at which q has the sign of the side, and says so.
+/// Of `r*u = 0` at `r > 0` the factor r has no zero; a mass that a pendulum's position shows wherever it rests is not
+/// shown where it hangs.
+#[test]
+fn what_holds_at_equilibria_is_that_of_all_of_them() {
+    let orbit = of("x: [v, h, mu]\ny: [r]\nu: [a, u]\nassume: [r > 0, mu > 0, h > 0]\n\
+                    f_x: {v: h^2/r^3 - mu/r^2 + a, h: r*u, mu: 0}\nf_y: {r: v}\nphi: [v, h, mu, h^2]");
+    assert!(orbit.contains(&"while the plant rests, only `z1`, `z3 - z4/r` are identified".to_owned()), "{orbit:?}");
+    let pendulum = of("x: [w, a, b]\ny: [q]\nu: [u]\nassume: [a > 0, b > 0]\n\
+                       f_x: {w: u - a*sin(q) - b*w, a: 0, b: 0}\nf_y: {q: w}\nphi: [w + b*q, b, a]");
+    let hanging = "while the plant rests and `sin(q) = 0`, it was not decided what is identified";
+    assert!(pendulum.contains(&hanging.to_owned()), "{pendulum:?}");
+}
+
 #[test]
 fn equilibria_of_a_cell_are_listed_with_its_sides() {
     let plant = "x: [a, b]\ny: [q]\nu: [v, r]\nassume: [v > 0]\nphi: [a, b]\n\

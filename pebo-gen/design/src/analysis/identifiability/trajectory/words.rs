@@ -7,6 +7,9 @@ use crate::source::{counted, listed};
 use pebo_cas::domain::cells::Side;
 use pebo_cas::{Expr, Node, Symbol};
 
+/// Characters of a combination of unknowns up to which it is written: in a longer one a reader finds nothing.
+const LONGEST: usize = 120;
+
 impl Trajectories {
     /// Tests whether there are cells of the domain in which not all unknowns are identifiable.
     pub fn is_divided(&self) -> bool {
@@ -45,8 +48,10 @@ impl Trajectories {
         let blind = self.blind.iter().map(|blind| blind.line(plant));
         let parameters = (!self.parameters && !plant.parameters.is_empty())
             .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
-        let others = (!self.everywhere && !self.blind.is_empty())
-            .then(|| "these were found: there may be other trajectories of this kind".to_owned());
+        let others = (!self.everywhere).then(|| match self.blind.as_slice() {
+            [] => "trajectories that hide unknowns were not worked out: there may be some".to_owned(),
+            _ => "these were found: there may be other trajectories of this kind".to_owned(),
+        });
         std::iter::once(first.to_owned()).chain(blind).chain(others).chain(parameters).collect()
     }
 
@@ -99,8 +104,11 @@ impl BlindTrajectory {
         if !self.is_decided() {
             return format!("while {condition}, it was not decided what is identified");
         }
-        let (known, of_states) = self.combinations(plant);
-        let mut identifiable: Vec<String> = known.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
+        let (known, mut of_states) = self.combinations(plant);
+        let (short, long): (Vec<Expr>, Vec<Expr>) =
+            known.into_iter().partition(|combination| plant.arena.print(*combination).len() <= LONGEST);
+        of_states.extend(long);
+        let mut identifiable: Vec<String> = short.iter().map(|e| format!("`{}`", plant.arena.print(*e))).collect();
         if !of_states.is_empty() {
             let is_unknown = |symbol: &Symbol| !plant.declares(*symbol) && !plant.is_of_extension(*symbol);
             let unknowns = plant.arena.symbols_of(&of_states).into_iter().filter(is_unknown);
