@@ -119,7 +119,7 @@ pub use fault::Fault;
 pub use interface::{INTERFACE, emitted_for};
 pub use model::{Functions, Model, OutputSlopes, Rebase, Regression};
 pub use monitor::{Excitation, Monitor};
-pub use numeric::{Real, Sum};
+pub use numeric::{Real, Sum, Table};
 pub use observer::{Innovation, Late, LateObserver, Observer, State};
 pub use output_form::{Measured, OutputForm};
 pub use regression::{

@@ -26,6 +26,7 @@ const fn case(model: &'static str, within: f64) -> Case {
 const CALM: (&str, &str) = ("V_d: {0: 25, 0.2: 30, 0.4: 15, 0.6: 5, 0.8: 20}", "V_d: 25");
 
 const CASES: &[Case] = &[
+    case("battery_curve", 100.0),
     case("boost", 0.4),
     case("buck_boost", 0.4),
     case("cart_pendulum", 1.6),

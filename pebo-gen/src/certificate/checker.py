@@ -67,6 +67,60 @@ def derivative(signal, order):
     return sp.Symbol(f"{signal}^({order})", real=True)
 
 
+class Table(sp.Function):
+    """A function between points, or a derivative of it: polynomials in the distance from where each begins."""
+
+    starts, pieces, slope = (), (), None
+
+    @classmethod
+    def eval(cls, argument):
+        return cls.piece(argument, argument) if argument.is_Rational or argument.is_Float else None
+
+    @classmethod
+    def piece(cls, place, argument):
+        """The polynomial that holds at a place, at an argument."""
+        at = max((k for k, start in enumerate(cls.starts) if start <= place), default=None)
+        # Before the first point its line goes on.
+        start, piece = (cls.starts[0], cls.pieces[0][:2 - cls.order]) if at is None else (cls.starts[at], cls.pieces[at])
+        return sum((c * (argument - start) ** k for k, c in enumerate(piece)), ZERO)
+
+    def fdiff(self, argindex=1):
+        return self.slope(self.args[0]) if self.slope else ZERO
+
+
+def tabulate(name, stated):
+    """Adds a table and its derivatives to the functions."""
+    s, v = zip(*([number(text) for text in point] for point in stated["points"]))
+    gaps = [b - a for a, b in zip(s, s[1:])]
+    chords = [(b - a) / gap for a, b, gap in zip(v, v[1:], gaps)]
+    if "linear" in stated:
+        pieces = [[value, chord] for value, chord in zip(v, [*chords, chords[-1]])]
+    else:
+        inner = [0 if a * b <= 0 else 3 * (g + h) / ((2 * h + g) / a + (h + 2 * g) / b)
+                 for a, b, g, h in zip(chords, chords[1:], gaps, gaps[1:])]
+        ends = [chords[0], chords[-1]]
+        if len(chords) > 1:
+            ends = [end_slope(*gaps[:2], *chords[:2]), end_slope(*gaps[:-3:-1], *chords[:-3:-1])]
+        d = [ends[0], *inner, ends[1]]
+        pieces = [[value, a, (3 * chord - 2 * a - b) / gap, (a + b - 2 * chord) / gap**2]
+                  for value, a, b, chord, gap in zip(v, d, d[1:], chords, gaps)]
+        pieces.append([v[-1], d[-1], 0, 0])
+    names = [name, f"{name}_slope", *(f"{name}_slope{order}" for order in range(2, len(pieces[0])))]
+    slope = None
+    for order in reversed(range(len(pieces[0]))):
+        own = [[sp.ff(k, order) * c for k, c in enumerate(piece)][order:] for piece in pieces]
+        parts = {"starts": s, "pieces": own, "order": order, "slope": slope}
+        slope = FUNCTIONS[names[order]] = type(names[order], (Table,), parts)
+
+
+def end_slope(gap, following, chord, other):
+    """The slope at an end: that of a parabola, kept monotone."""
+    slope = ((2 * gap + following) * chord - gap * other) / (gap + following)
+    if slope * chord <= 0:
+        return ZERO
+    return 3 * chord if chord * other < 0 and abs(slope) > abs(3 * chord) else slope
+
+
 def formulas(texts):
     return [formula(text) for text in texts]
 
@@ -116,6 +170,8 @@ class Plant:
             sign = signs.get(name)
             assumed = {1: {"positive": True}, -1: {"negative": True}}.get(sign, {"real": True})
             NAMES[name] = ZERO if name in constants and sign == 0 else sp.Symbol(name, **assumed)
+        for name, table in stated.get("tables", {}).items():
+            tabulate(name, table)
         for name, text in stated.get("define", {}).items():
             NAMES[name] = formula(text)
         self.x, self.y, self.u, self.w = ([NAMES[name] for name in stated.get(key, [])] for key in ("x", "y", "u", "w"))
@@ -287,7 +343,7 @@ def is_zero(expr, identities=()):
         ideal = [sp.numer(sp.together(identity)) for identity in vanishing]
         numerator = sp.reduced(numerator, ideal)[1]
     # Of arguments with signs SymPy simplifies little, and for long: cells do better.
-    return numerator == 0 or (not identities and not expr.has(*BENT, *STEPS) and sp.simplify(expr) == 0)
+    return numerator == 0 or (not identities and not expr.has(*BENT, *STEPS, Table) and sp.simplify(expr) == 0)
 
 
 class Points:
@@ -410,14 +466,14 @@ def rank(rows):
 
 
 class Cell:
-    """The cell of a point, on which no argument of abs, sign, max and min changes its sign."""
+    """The cell of a point, on which no argument of abs, sign, max and min changes its sign, and none of a table its piece."""
 
     def __init__(self, point):
         self.point, self.on_border = point, False
 
     def smooth(self, expr):
         """The expression by its branches, from the innermost on. On a border, which is not left, any branch will do."""
-        bent = BENT + STEPS
+        bent = (*BENT, *STEPS, Table)
         return expr.replace(lambda e: isinstance(e, bent), self.branch) if expr.has(*bent) else expr
 
     def branch(self, e):
@@ -427,6 +483,10 @@ class Cell:
             self.on_border |= values.count(best) > 1
             return e.args[values.index(best)]
         argument = e.args[0]
+        if isinstance(e, Table):
+            place = value(argument, self.point)
+            self.on_border |= any(place == start for start in e.starts)
+            return e.piece(place, argument)
         sign = sp.sign(value(argument, self.point))
         self.on_border |= sign == 0
         if isinstance(e, STEPS):
@@ -725,7 +785,7 @@ class Certificate:
                 expr = expr.subs({sp.Abs(above): above, sp.Abs(-above): above, **signs})
         if is_zero(expr, self.plant.identities):
             return self.say(claim, "proved")
-        if expr.has(*BENT, *STEPS):
+        if expr.has(*BENT, *STEPS, Table):
             cells = self.branches(expr)
             if cells and all(is_zero(branch, self.plant.identities) for branch in cells):
                 return self.say(claim, "proved", f" on each cell that was met: {len(cells)} forms")
@@ -843,7 +903,7 @@ class Certificate:
         texts = [*flat([entry.get("positive", []) for entry in cells])]
         symbols = set().union(*(self.plant.valued(e).free_symbols for e in [*looked, *formulas(texts)]))
         patterns, points = {}, self.sets.met(symbols - {*self.plant.given} - {*self.at_start})
-        least = DRAWN if any(e.has(*BENT) for e in looked) else 1
+        least = DRAWN if any(e.has(*BENT, Table) for e in looked) else 1
         for drawn in range(least + OF_CELL):
             if drawn >= least and all(full or listed for _, _, full, listed in patterns.values()):
                 break

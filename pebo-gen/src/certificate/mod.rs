@@ -12,7 +12,8 @@ use pebo_design::analysis::{
     BlindTrajectory, Derivation, Excitation, RegressionKind, Still, Trajectories, TrajectoryCondition,
 };
 use pebo_design::model::class::Matrix;
-use pebo_design::model::{Class, Entry, Formula, Model};
+use pebo_design::model::formula::{Interpolation, Term};
+use pebo_design::model::{Class, Decimal, Entry, Formula, Model};
 use pebo_design::plant::Plant;
 
 use python::Literal;
@@ -99,6 +100,7 @@ fn stated(model: &Model) -> Literal {
         ("u", names(&model.u)),
         ("w", names(&model.w)),
         ("time", time.map_or(Literal::None, |name| Literal::text(&name.value))),
+        ("tables", Literal::Dict(tables(model))),
         ("define", named(&model.define)),
         ("assume", Literal::texts(&model.assume)),
         ("identities", texts(&model.identities)),
@@ -109,6 +111,20 @@ fn stated(model: &Model) -> Literal {
     ];
     parts.extend(class.map(|(name, parts)| (name, Literal::Dict(parts))));
     dict(parts)
+}
+
+/// The tables by their points.
+fn tables(model: &Model) -> Vec<(String, Literal)> {
+    let table = |entry: &Entry<Formula>| {
+        let Term::Table(table, ..) = &entry.value.term else { return None };
+        let point = |(at, value): &(Decimal, Decimal)| Literal::texts([at.text(), value.text()]);
+        let mut parts = vec![("points", Literal::List(table.points.iter().map(point).collect()))];
+        if table.interpolation == Interpolation::Linear {
+            parts.push(("linear", Literal::Truth(true)));
+        }
+        Some((table.name.clone(), dict(parts)))
+    };
+    model.define.iter().filter_map(table).collect()
 }
 
 /// A matrix with the depth of lists that its author gave it.

@@ -5,11 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
 use super::literal::literal;
 use super::names::{LONGEST, Names};
+use super::table::Tables;
 use pebo_cas::{Function, Rational};
 use pebo_design::program::{Constant, Operand, Operation, Program};
 
@@ -71,6 +72,7 @@ pub(super) fn render(
     program: &Program,
     inputs: &[Piece],
     numbers: &mut impl FnMut(&Rational) -> Piece,
+    tables: &Tables,
     names: &mut Names,
 ) -> Body {
     let constants = program
@@ -82,7 +84,9 @@ pub(super) fn render(
         })
         .collect();
     let (results, statements, variables) = (Vec::new(), Vec::new(), Vec::new());
-    let mut renderer = Renderer { inputs, constants, results, pairs: BTreeMap::new(), statements, variables, names };
+    let pairs = BTreeMap::new();
+    let tables = program.tables.iter().map(|table| (table.order, tables.name(table).to_owned())).collect();
+    let mut renderer = Renderer { inputs, constants, tables, results, pairs, statements, variables, names };
     let uses = program.uses();
     for (index, (operation, uses)) in program.operations.iter().zip(uses).enumerate() {
         let other = operation.companion().and_then(|other| program.operations.iter().position(|found| *found == other));
@@ -129,6 +133,8 @@ fn negative(piece: Piece) -> Piece {
 struct Renderer<'a> {
     inputs: &'a [Piece],
     constants: Vec<Piece>,
+    /// The order of the derivative, and the constant.
+    tables: Vec<(usize, String)>,
     results: Vec<Piece>,
     /// For a sine or cosine whose companion is needed too: the companion, from the same call.
     pairs: BTreeMap<usize, Piece>,
@@ -202,7 +208,22 @@ impl Renderer<'_> {
                 let [a, b] = self.fitting([a, b], 10 + name.len());
                 call(name, &[a, b], None)
             }
+            Operation::Table(table, a) => self.table(table, a),
         }
+    }
+
+    /// A table, or a derivative of it, at an argument.
+    fn table(&mut self, table: usize, argument: Operand) -> Piece {
+        let (order, name) = self.tables[table].clone();
+        let [argument] = self.fitting([argument], ".derivative(2, )".len() + name.len());
+        let (constant, inner) = (ident(&name), &argument.tokens);
+        let order_literal = Literal::usize_unsuffixed(order);
+        let (tokens, width) = match order {
+            0 => (quote!(#constant.value(#inner)), ".value()".len()),
+            1 => (quote!(#constant.slope(#inner)), ".slope()".len()),
+            _ => (quote!(#constant.derivative(#order_literal, #inner)), ".derivative(2, )".len()),
+        };
+        Piece::atom(tokens, width + name.len() + argument.width, None)
     }
 
     /// A sine or cosine whose companion is needed too: both from one call. Keeps the companion for its turn.

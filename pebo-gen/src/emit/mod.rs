@@ -17,6 +17,7 @@ mod literal;
 mod module;
 mod names;
 mod read_back;
+mod table;
 
 #[cfg(test)]
 mod tests;

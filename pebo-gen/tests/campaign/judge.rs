@@ -72,7 +72,8 @@ pub(crate) fn value(formula: &Formula, point: &Point) -> (f64, f64) {
     let (exact, carried) = match &formula.term {
         Term::Number(decimal) => return (decimal.to_f64(), 0.0),
         Term::Name(name) => return (point.get(name.as_str()).copied().unwrap_or(std::f64::consts::PI), 0.0),
-        Term::Estimate(_) => (f64::NAN, 0.0),
+        // Random formulas have no tables.
+        Term::Estimate(_) | Term::Table(..) => (f64::NAN, 0.0),
         Term::Negative(operand) => {
             let (a, e) = at(operand);
             return (-a, e);
@@ -96,6 +97,7 @@ pub(crate) fn value(formula: &Formula, point: &Point) -> (f64, f64) {
                     (f(a), spread(f, a, e))
                 }
                 Value::Binary(f) => both(f, at(&arguments[0]), at(&arguments[1])),
+                Value::Tabulated(_) => (f64::NAN, 0.0),
             }
         }
     };

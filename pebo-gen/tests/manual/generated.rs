@@ -33,6 +33,9 @@ fn keys(path: &str) -> Option<String> {
     let node = path.split('/').filter(|part| !part.is_empty()).try_fold(&schema, |node, part| below(node, part))?;
     let by_class = &schema["dependentSchemas"]["lti"]["properties"];
     let mut table = "| key | value | what it is | example |\n|---|---|---|---|\n".to_owned();
+    // Or of one of several shapes.
+    let shapes = node["anyOf"].as_sequence().into_iter().flatten();
+    let node = shapes.chain([node]).find(|shape| shape["properties"].is_mapping())?;
     for (key, value) in node["properties"].as_mapping()? {
         let key = key.as_str()?;
         let listed =

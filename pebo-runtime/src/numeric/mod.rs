@@ -1,4 +1,5 @@
-//! Numerical kernels: the scalar's functions, compensated sums, products of small matrices, small linear systems.
+//! Numerical kernels: the scalar's functions, compensated sums, products of small matrices, small linear systems,
+//! functions between points.
 
 pub(crate) mod decay;
 pub(crate) mod dense;
@@ -9,6 +10,8 @@ pub(crate) mod linear;
 mod real;
 mod single;
 pub(crate) mod sum;
+mod table;
 
 pub use real::Real;
 pub use sum::Sum;
+pub use table::Table;

@@ -1,4 +1,4 @@
-//! Rewrites absolute values, roots of squares, signs, extremes and saturations by the signs of a domain.
+//! Rewrites absolute values, roots of squares, signs, extremes, saturations and tables by the signs of a domain.
 //!
 //! In: a domain, as a cell of one, and formulas. Out: the same functions on the domain, where each of these operations
 //! is the branch that the domain implies: on a cell with `a < 0`, `max(0, a)` is 0, and so are its derivatives. An
@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 use crate::number::rational::half;
 use crate::{Arena, Domain, Product, Rational, Relation};
 
@@ -18,6 +19,7 @@ impl Domain {
         for expr in arena.postorder(exprs) {
             let rebuilt = arena.rebuild(expr, &known);
             let branch = match arena.node(rebuilt) {
+                Node::Call(Function::Table, _) => self.piece(arena, rebuilt),
                 Node::Call(function, arguments) => self.branch(arena, function, &arguments),
                 Node::Product(product) => self.roots_of_squares(arena, &product),
                 _ => None,
@@ -75,6 +77,24 @@ impl Domain {
             None => vec![own.clone()],
         });
         found.iter().any(Option::is_some).then(|| arena.multiply(&product.coefficient, factors))
+    }
+
+    /// The polynomial of a table's piece, if the domain implies one.
+    fn piece(&self, arena: &Arena, call: Expr) -> Option<Expr> {
+        let (table, argument) = Pieces::of(arena, call)?;
+        let is_above = |knot: &Rational| {
+            let above = arena.sub(argument, arena.number(knot.clone()));
+            self.grants(arena, (above, Relation::NonNegative))
+        };
+        let is_below = |knot: &Rational| {
+            let below = arena.sub(arena.number(knot.clone()), argument);
+            self.grants(arena, (below, Relation::NonNegative))
+        };
+        // Between the last knot that it is above and the next where another polynomial begins.
+        let begun = table.knots.iter().take_while(|knot| is_above(knot)).count();
+        let next = table.meeting(None).into_iter().find(|knot| begun == 0 || *knot > table.knots[begun - 1]);
+        let is_inside = next.is_none_or(|next| is_below(&next));
+        is_inside.then(|| table.branch(arena, begun, argument))
     }
 
     /// The branch of a non-smooth operation, if the domain implies one.

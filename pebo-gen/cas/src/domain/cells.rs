@@ -1,7 +1,7 @@
 //! The cells of a domain on which formulas are analytic.
 //!
-//! In: a domain, and formulas with absolute values, signs, least and greatest values, roots of squares and inverse
-//! sines. Out: the domain divided by the signs of their arguments. A property proved at a point of a cell holds almost
+//! In: a domain, and formulas with absolute values, signs, least and greatest values, tables, roots of squares and
+//! inverse sines. Out: the domain divided by the signs of their arguments. A property proved at a point of a cell holds almost
 //! everywhere in that cell, but not in others: `q + |q|` is not the zero function, and vanishes wherever q is negative.
 //!
 //! An angle recovered from its functions, as `asin(sin(q))`, is a different straight line on each of infinitely many
@@ -9,6 +9,7 @@
 
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 use crate::tower::{Field, Obstacle};
 use crate::{Arena, Domain, Facts, Rational, Relation};
 
@@ -263,6 +264,11 @@ impl Arena {
             let nodes = self.postorder(&std::mem::take(&mut open));
             for node in nodes {
                 let Node::Call(function, arguments) = self.node(node) else { continue };
+                if let Some((table, argument)) = Pieces::of(self, node) {
+                    let knots = table.meeting(None).into_iter();
+                    found.extend(knots.map(|knot| self.sub(argument, self.number(knot))));
+                    continue;
+                }
                 match function.row().in_terms {
                     Some(in_terms) => open.push(in_terms(self, &arguments)),
                     None if function == Function::Abs && !found.contains(&arguments[0]) => found.push(arguments[0]),

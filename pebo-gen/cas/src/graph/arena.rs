@@ -11,6 +11,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::expr::{Expr, Node, Symbol};
 use super::function::Function;
+use super::function::pieces::{self, Pieces};
 use crate::number::interval::Interval;
 use crate::number::notation::Notation;
 use crate::{Budget, Rational};
@@ -60,6 +61,8 @@ pub struct Arena {
     /// The number of logarithms of numbers.
     number_logarithms: Cell<usize>,
     notation: Notation,
+    /// The author's names of tables.
+    tables: RefCell<FxHashMap<Pieces, String>>,
 }
 
 impl Arena {
@@ -83,6 +86,7 @@ impl Arena {
             satisfied: RefCell::default(),
             number_logarithms: Cell::default(),
             notation: Notation::default(),
+            tables: RefCell::default(),
         }
     }
 
@@ -94,6 +98,18 @@ impl Arena {
     /// The author's notation of numbers.
     pub fn notation(&self) -> &Notation {
         &self.notation
+    }
+
+    /// Names a table, unless it has a name.
+    pub fn name_table(&self, table: Pieces, name: &str) {
+        self.tables.borrow_mut().entry(table).or_insert_with(|| name.to_owned());
+    }
+
+    /// The name of a table as a function: the author's, and that of its slope, or of a further derivative by its order.
+    pub fn table_name(&self, table: &Pieces) -> String {
+        let tables = self.tables.borrow();
+        let name = tables.get(&Pieces { order: 0, ..table.clone() }).map_or("table", String::as_str);
+        format!("{name}{}", pieces::suffix(table.order))
     }
 
     /// The node of an expression.

@@ -10,6 +10,7 @@ use crate::forms::number_powers::{as_power, printed_parts};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 use crate::number::notation::whole;
 
 /// The length up to which a formula is printed, all repetitions included.
@@ -67,7 +68,8 @@ impl Arena {
                 Node::Sum(sum) => self.print_sum(&sum, &known),
                 Node::Product(product) => self.print_product(&product, &known),
                 Node::Call(function, arguments) => {
-                    self.print_power(function, arguments[0], &known).unwrap_or_else(|| {
+                    let special = self.print_power(function, arguments[0], &known);
+                    special.or_else(|| self.print_table(e, &known)).unwrap_or_else(|| {
                         let inner: Vec<&str> = arguments.iter().map(|a| known[a].text.as_str()).collect();
                         Text::new(format!("{}({})", function.row().name, inner.join(", ")), Binding::Atom)
                     })
@@ -80,6 +82,12 @@ impl Arena {
             known.insert(e, text);
         }
         known.remove(&expr).map(|t| t.text).unwrap_or_default()
+    }
+
+    /// A table at an argument.
+    fn print_table(&self, call: Expr, known: &FxHashMap<Expr, Text>) -> Option<Text> {
+        let (table, argument) = Pieces::of(self, call)?;
+        Some(Text::new(format!("{}({})", self.table_name(&table), known[&argument].text), Binding::Atom))
     }
 
     /// A power of a number, if the function is one.

@@ -6,6 +6,7 @@
 use crate::model::formula::{Decimal, EXPONENT_LIMIT, Formula, Operator, PI, Term};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::graph::conditions::Regularity;
+use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Expr, Function, Rational};
 
 use super::Scope;
@@ -28,6 +29,14 @@ pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Di
         Term::Binary(operator, left, right) => {
             let (a, b) = (lower(arena, scope, left)?, lower(arena, scope, right)?);
             binary(arena, *operator, (a, left.span), (b, right.span))
+        }
+        Term::Table(table, order, argument) => {
+            let pieces = Pieces { order: *order, ..table.pieces.clone() };
+            arena.name_table(table.pieces.clone(), &table.name);
+            for decimal in table.points.iter().flat_map(|(at, value)| [at, value]) {
+                arena.notation().keep(&exact(decimal, formula.span)?, decimal.text());
+            }
+            Ok(pieces.call(arena, lower(arena, scope, argument)?))
         }
         Term::Call(function, arguments) => {
             let lowered = arguments.iter().map(|a| lower(arena, scope, a)).collect::<Result<Vec<_>, _>>()?;

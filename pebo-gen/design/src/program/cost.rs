@@ -41,7 +41,8 @@ impl Cost {
                 | Operation::ExpM1(..)
                 | Operation::Ln1P(..)
                 | Operation::Unary(..)
-                | Operation::Binary(..) => &mut cost.calls,
+                | Operation::Binary(..)
+                | Operation::Table(..) => &mut cost.calls,
             };
             *counter += 1;
         }

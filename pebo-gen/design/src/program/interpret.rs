@@ -6,11 +6,13 @@
 use super::straight::{Operand, Operation, Program};
 use pebo_cas::Function;
 use pebo_cas::graph::function::Value;
+use pebo_cas::graph::function::pieces::FloatTable;
 
 /// Runs one program at `f64`, repeatedly.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     values: Vec<f64>,
+    tables: Vec<FloatTable>,
     /// The number of inputs.
     inputs: usize,
     /// The positions of the inputs that are read: a caller gives all that it has, and few programs need them all.
@@ -32,6 +34,7 @@ enum Instruction {
     Power(usize, usize),
     Unary(fn(f64) -> f64, usize),
     Binary(fn(f64, f64) -> f64, usize, usize),
+    Table(usize, usize),
 }
 
 impl Interpreter {
@@ -61,10 +64,12 @@ impl Interpreter {
                 Operation::Ln1P(a) => Instruction::Unary(f64::ln_1p, slot(a)),
                 Operation::Unary(function, a) => Instruction::Unary(unary(function), slot(a)),
                 Operation::Binary(function, a, b) => Instruction::Binary(binary(function), slot(a), slot(b)),
+                Operation::Table(table, a) => Instruction::Table(table, slot(a)),
             })
             .collect();
         let outputs = program.outputs.iter().copied().map(slot).collect();
-        Self { values, inputs: program.inputs.len(), read, first, instructions, outputs }
+        let tables = program.tables.iter().map(FloatTable::of).collect();
+        Self { values, tables, inputs: program.inputs.len(), read, first, instructions, outputs }
     }
 
     /// The outputs for these inputs.
@@ -95,6 +100,7 @@ impl Interpreter {
                 Instruction::Power(a, b) => values[a].powf(values[b]),
                 Instruction::Unary(function, a) => function(values[a]),
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
+                Instruction::Table(table, a) => self.tables[table].value(values[a]),
             };
         }
         self.outputs.iter().map(|&slot| values[slot])
@@ -104,13 +110,13 @@ impl Interpreter {
 fn unary(function: Function) -> fn(f64) -> f64 {
     match function.row().value {
         Value::Unary(value) => value,
-        Value::Binary(_) => unreachable!("{function:?} was lowered with one argument"),
+        Value::Binary(_) | Value::Tabulated(_) => unreachable!("{function:?} was lowered with one argument"),
     }
 }
 
 fn binary(function: Function) -> fn(f64, f64) -> f64 {
     match function.row().value {
         Value::Binary(value) => value,
-        Value::Unary(_) => unreachable!("{function:?} was lowered with two arguments"),
+        Value::Unary(_) | Value::Tabulated(_) => unreachable!("{function:?} was lowered with two arguments"),
     }
 }

@@ -15,6 +15,7 @@ use super::angles::Angles;
 use super::factor::factor;
 use super::sharing::Sharing;
 use super::straight::{Constant, Operand, Operation, Program};
+use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Expr, Function, Node, Product, Rational, Sum, Symbol};
 
 /// An output depends on a symbol that is not an input.
@@ -63,6 +64,7 @@ pub(super) fn lower_with(
         angles: Angles::of(arena, &all),
         known: FxHashMap::default(),
         constants: Numbering::default(),
+        tables: Numbering::default(),
         operations: Numbering::default(),
     };
     for (&(name, _), &value) in parts.iter().zip(values) {
@@ -80,6 +82,7 @@ pub(super) fn lower_with(
     let program = Program {
         inputs: inputs.to_vec(),
         constants: lowering.constants.entries,
+        tables: lowering.tables.entries,
         operations: lowering.operations.entries,
         outputs,
     };
@@ -122,6 +125,7 @@ pub(super) struct Lowering<'a> {
     pub(super) angles: Angles,
     pub(super) known: FxHashMap<Expr, Signed>,
     constants: Numbering<Constant>,
+    tables: Numbering<Pieces>,
     operations: Numbering<Operation>,
 }
 
@@ -141,6 +145,11 @@ impl Lowering<'_> {
                 positive(self.trigonometric(function, arguments[0]))
             }
             Node::Call(function, arguments) => {
+                if let Some((table, argument)) = Pieces::of(self.arena, expr) {
+                    let argument = self.plain(self.known[&argument]);
+                    let table = self.tables.position(table);
+                    return positive(self.operation(Operation::Table(table, argument)));
+                }
                 if function == Function::Log
                     && let Some(beside) = beside_one(self.arena, arguments[0])
                 {

@@ -3,6 +3,7 @@
 //! Holds: an operation uses inputs, constants and results of earlier operations only; no two constants
 //! are the same, and each operation and constant is used.
 
+use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Expr, Function, Rational, Symbol};
 
 /// The source of a value.
@@ -58,13 +59,15 @@ pub enum Operation {
     Unary(Function, Operand),
     /// A function of two arguments.
     Binary(Function, Operand, Operand),
+    /// The table at this position, at an argument.
+    Table(usize, Operand),
 }
 
 impl Operation {
     /// The operands of the operation, in order.
     pub(crate) fn operands(self) -> impl Iterator<Item = Operand> {
         let (first, second) = match self {
-            Self::Neg(a) | Self::ExpM1(a) | Self::Ln1P(a) | Self::Unary(_, a) => (a, None),
+            Self::Neg(a) | Self::ExpM1(a) | Self::Ln1P(a) | Self::Unary(_, a) | Self::Table(_, a) => (a, None),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
@@ -97,6 +100,7 @@ impl Operation {
             Self::Ln1P(a) => Self::Ln1P(change(a)),
             Self::Unary(function, a) => Self::Unary(function, change(a)),
             Self::Binary(function, a, b) => Self::Binary(function, change(a), change(b)),
+            Self::Table(table, a) => Self::Table(table, change(a)),
         }
     }
 }
@@ -108,6 +112,8 @@ pub struct Program {
     pub inputs: Vec<Symbol>,
     /// The numbers that the operations use.
     pub constants: Vec<Constant>,
+    /// The tables that the operations use.
+    pub tables: Vec<Pieces>,
     /// The operations, in order.
     pub operations: Vec<Operation>,
     /// The outputs.
@@ -153,6 +159,7 @@ impl Program {
                 Operation::Ln1P(a) => arena.call(Function::Log, &[arena.add(arena.one(), formula(a))]),
                 Operation::Unary(function, a) => arena.call(function, &[formula(a)]),
                 Operation::Binary(function, a, b) => arena.call(function, &[formula(a), formula(b)]),
+                Operation::Table(table, a) => self.tables[table].call(arena, formula(a)),
             });
         }
         formulas
@@ -166,9 +173,14 @@ impl Program {
             .iter()
             .map(|constant| Operand::Constant(position(&mut joined.constants, constant.clone())))
             .collect();
+        let tables: Vec<usize> = other.tables.iter().map(|table| position(&mut joined.tables, table.clone())).collect();
         let mut operands: Vec<Operand> = Vec::with_capacity(other.operations.len());
         for operation in &other.operations {
-            let moved = operation.map(|operand| match operand {
+            let own = match *operation {
+                Operation::Table(table, a) => Operation::Table(tables[table], a),
+                other => other,
+            };
+            let moved = own.map(|operand| match operand {
                 Operand::Input(_) => operand,
                 Operand::Constant(index) => constants[index],
                 Operand::Result(index) => operands[index],
@@ -210,6 +222,7 @@ impl Program {
         Self {
             inputs: self.inputs,
             constants: kept(self.constants, &used),
+            tables: self.tables,
             operations: kept(self.operations, &needed).into_iter().map(|operation| operation.map(moved)).collect(),
             outputs: self.outputs.into_iter().map(moved).collect(),
         }

@@ -152,6 +152,13 @@ impl Label {
                 self.upright(sign);
                 self.write(right, least);
             }
+            Term::Table(table, order, argument) => {
+                self.write_name(&table.name, false);
+                self.upright(&"′".repeat(*order));
+                self.upright("(");
+                self.write(argument, SUM);
+                self.upright(")");
+            }
             Term::Call(function, arguments) => {
                 self.upright(function.row().name);
                 self.upright("(");
@@ -204,7 +211,7 @@ impl Label {
 
 fn binding(formula: &Formula) -> u8 {
     match &formula.term {
-        Term::Number(_) | Term::Name(_) | Term::Estimate(_) | Term::Call(..) => ATOM,
+        Term::Number(_) | Term::Name(_) | Term::Estimate(_) | Term::Call(..) | Term::Table(..) => ATOM,
         Term::Negative(_) | Term::Binary(Operator::Add | Operator::Subtract, ..) => SUM,
         Term::Binary(Operator::Multiply | Operator::Divide, ..) => PRODUCT,
         Term::Binary(Operator::Power, ..) => POWER,

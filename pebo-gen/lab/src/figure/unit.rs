@@ -11,7 +11,7 @@ pub(crate) fn of<'u>(formula: &Formula, unit: &impl Fn(&str) -> Option<&'u str>)
         Term::Name(name) | Term::Estimate(name) => unit(name),
         Term::Negative(operand) => of(operand, unit),
         Term::Binary(Operator::Add | Operator::Subtract, left, right) => same([of(left, unit), of(right, unit)]),
-        Term::Number(_) | Term::Binary(..) | Term::Call(..) => None,
+        Term::Number(_) | Term::Binary(..) | Term::Call(..) | Term::Table(..) => None,
     }
 }
 

@@ -7,6 +7,7 @@
 use super::super::literal::Scalar;
 use pebo_cas::Function;
 use pebo_cas::graph::function::Value;
+use pebo_cas::graph::function::pieces::FloatTable;
 use pebo_design::program::{Constant, Operand, Operation, Program};
 
 /// The nearest number of the scalar.
@@ -41,6 +42,7 @@ pub(super) fn run(program: &Program, scalar: Scalar, inputs: &[f64]) -> Vec<f64>
             Operation::Ln1P(a) => of(a).ln_1p(),
             Operation::Unary(function, a) => unary(function, of(a)),
             Operation::Binary(function, a, b) => binary(function, of(a), of(b)),
+            Operation::Table(table, a) => FloatTable::of(&program.tables[table]).value(of(a)),
         };
         results.push(round(scalar, value));
     }
@@ -50,13 +52,13 @@ pub(super) fn run(program: &Program, scalar: Scalar, inputs: &[f64]) -> Vec<f64>
 fn unary(function: Function, a: f64) -> f64 {
     match function.row().value {
         Value::Unary(value) => value(a),
-        Value::Binary(_) => f64::NAN,
+        Value::Binary(_) | Value::Tabulated(_) => f64::NAN,
     }
 }
 
 fn binary(function: Function, a: f64, b: f64) -> f64 {
     match function.row().value {
         Value::Binary(value) => value(a, b),
-        Value::Unary(_) => f64::NAN,
+        Value::Unary(_) | Value::Tabulated(_) => f64::NAN,
     }
 }

@@ -254,6 +254,7 @@ pub(super) fn path_text(path: &syn::Path) -> Result<String, EmitError> {
             for argument in &arguments.args {
                 match argument {
                     GenericArgument::Type(argument) => inner.push(type_text(argument)?),
+                    GenericArgument::Const(size) => inner.push(flat(size)?),
                     other => return Err(unknown(other)),
                 }
             }

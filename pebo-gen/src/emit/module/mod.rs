@@ -28,6 +28,7 @@ use super::error::EmitError;
 use super::expression::{self, Body, Piece, ident, render};
 use super::literal::{Scalar, literal, whole};
 use super::names::{Names, camel};
+use super::table::Tables;
 use abbreviation::Abbreviations;
 use describe::describe;
 use pebo_cas::{Expr, Rational, Symbol};
@@ -70,6 +71,8 @@ pub(super) struct Scope {
     names_before_terms: Names,
     /// Numbers without a literal, with the names of their constants.
     ratios: BTreeMap<Rational, String>,
+    /// Tables, with the names of theirs.
+    tables: Tables,
 }
 
 impl Module<'_> {
@@ -88,6 +91,7 @@ impl Module<'_> {
         let check = (!self.asked.is_empty()).then(|| self.check(&mut scope));
         let constructors = self.constructors(&mut scope);
         let ratios = self.ratios(&scope);
+        let tables = scope.tables.items(&self.plant.arena, self.scalar, doc);
         let signals = self.signals();
 
         let lines = document::module(self);
@@ -149,6 +153,7 @@ impl Module<'_> {
             #(#sizes)*
             #signals
             #ratios
+            #tables
             #parameters
             #check
             #model
@@ -213,7 +218,8 @@ impl Module<'_> {
             None => fields.number("k"),
         });
         let fields = constants.collect();
-        Scope { locals, fields, names, names_before_terms, ratios: BTreeMap::new() }
+        let tables = Tables::of(arena, self.programs());
+        Scope { locals, fields, names, names_before_terms, ratios: BTreeMap::new(), tables }
     }
 
     fn uses(&self) -> TokenStream {
@@ -226,6 +232,7 @@ impl Module<'_> {
         names.extend(self.definitions.has_functions().then_some("Functions"));
         names.extend(self.definitions.has_output_slopes().then_some("OutputSlopes"));
         names.extend(self.rebase.then_some("Rebase"));
+        names.extend(self.programs().any(|program| !program.tables.is_empty()).then_some("Table"));
         names.extend((!self.asked.is_empty()).then_some("Fault"));
         names.extend(self.constructors_use());
         // In alphabetical order, as rustfmt has them.
@@ -247,6 +254,10 @@ impl Module<'_> {
             Constant::Pi => None,
         });
         let values = self.plant.parameters.iter().filter_map(|parameter| parameter.value.as_ref());
+        let tables = Tables::of(&self.plant.arena, self.programs());
+        if let Some(number) = tables.numbers().find(|number| !self.scalar.holds(number)) {
+            return Err(EmitError::OutOfRange { number: number.clone() });
+        }
         for value in numbers.chain(values).chain(self.tuned_numbers()) {
             let parts = [value.clone(), value.numerator().into(), value.denominator().into()];
             let written = if literal(value).is_some() { &parts[..1] } else { &parts[..] };
@@ -284,13 +295,15 @@ impl Scope {
     /// A program's statements and results, with local variables that differ from all arguments.
     pub(super) fn render(&mut self, program: &Program, inputs: &[Piece]) -> Body {
         let mut names = self.names.clone();
-        render(program, inputs, &mut |value| self.ratio(value), &mut names)
+        let tables = self.tables.clone();
+        render(program, inputs, &mut |value| self.ratio(value), &tables, &mut names)
     }
 
     /// The same for the program that computes the terms.
     pub(super) fn render_terms(&mut self, program: &Program, inputs: &[Piece]) -> Body {
         let mut names = self.names_before_terms.clone();
-        render(program, inputs, &mut |value| self.ratio(value), &mut names)
+        let tables = self.tables.clone();
+        render(program, inputs, &mut |value| self.ratio(value), &tables, &mut names)
     }
 
     /// The constant for a positive number without a literal.

@@ -20,7 +20,9 @@ use super::error::EmitError;
 use super::literal::Scalar;
 use super::module::check::{self, Condition};
 use super::module::{paper, signals};
+use super::table::read_constant;
 use block::{body, name_of, only_function, statements};
+use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Expr, Rational, Symbol};
 use pebo_design::analysis::{RegressionKind, Sign};
 use pebo_design::plant::{Plant, Settings};
@@ -36,7 +38,7 @@ pub(super) fn confirm(
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<(), EmitError> {
     let arena = &plant.arena;
-    let read = read(plant, definitions, tokens)?;
+    let read = read(plant, definitions, scalar, tokens)?;
     let expected = [
         ("Scalar", scalar.name()),
         ("X", "X"),
@@ -126,6 +128,13 @@ fn same_conditions(
 }
 
 impl Definitions<'_> {
+    /// The tables in the functions.
+    fn tables(&self, arena: &Arena) -> Vec<Pieces> {
+        let formulas: Vec<Expr> = self.functions.iter().flat_map(|function| function.rows.concat()).collect();
+        let parts = arena.postorder(&formulas).into_iter();
+        parts.filter_map(|part| Pieces::of(arena, part)).map(|(table, _)| Pieces { order: 0, ..table }).collect()
+    }
+
     /// The value of an argument when its function is read.
     pub(super) fn value(&self, arena: &Arena, argument: Argument) -> Value {
         let columns = |columns: &[Vec<Symbol>]| {
@@ -162,7 +171,7 @@ struct Read {
     paper: paper::Columns,
 }
 
-fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Result<Read, EmitError> {
+fn read(plant: &Plant, definitions: &Definitions, scalar: Scalar, tokens: &TokenStream) -> Result<Read, EmitError> {
     let arena = &plant.arena;
     let file: syn::File =
         syn::parse2(tokens.clone()).map_err(|error| EmitError::Unreadable { code: error.to_string() })?;
@@ -191,6 +200,11 @@ fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Resul
                 if size.map(|size| size.value.to_string()) != Some(item.expr.to_token_stream().to_string()) {
                     return Err(unreadable(item));
                 }
+            }
+            Item::Const(item) if item.ident.to_string().starts_with("TABLE_") => {
+                let table = read_constant(scalar, &definitions.tables(arena), &item.expr);
+                let table = table.ok_or_else(|| unreadable(item))?;
+                globals.declare(&item.ident.to_string(), Value::Table(table));
             }
             Item::Const(item) => {
                 let value = expression(arena, &item.expr, &globals)?;

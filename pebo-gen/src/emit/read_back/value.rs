@@ -9,7 +9,10 @@ use syn::{BinOp, Expr as Syntax, Lit, Member, Pat, PatSlice, PatTuple, UnOp};
 
 use crate::emit::error::EmitError;
 use crate::emit::literal::read;
+use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Expr, Function};
+use syn::punctuated::Punctuated;
+use syn::token::Comma;
 
 /// The value of an emitted expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +25,8 @@ pub(in crate::emit) enum Value {
     Fields(BTreeMap<String, Expr>),
     /// The results of the methods of an extension, and the fields of the result of a function of `Model`.
     Parts(BTreeMap<String, Vec<Vec<Expr>>>),
+    /// A table of the model.
+    Table(Pieces),
 }
 
 impl Value {
@@ -200,8 +205,12 @@ pub(in crate::emit) fn expression(arena: &Arena, syntax: &Syntax, scope: &Scope)
 fn method(arena: &Arena, call: &syn::ExprMethodCall, scope: &Scope) -> Result<Value, EmitError> {
     let unknown = || unreadable(call);
     let arguments = call.args.iter().map(|argument| expression(arena, argument, scope));
-    let arguments: Vec<Value> = arguments.collect::<Result<_, _>>()?;
+    let arguments: Vec<Result<Value, EmitError>> = arguments.collect();
     let name = call.method.to_string();
+    if let Value::Table(table) = expression(arena, &call.receiver, scope).unwrap_or(Value::List(Vec::new())) {
+        return called(arena, (&name, table), &call.args, &arguments).ok_or_else(unknown);
+    }
+    let arguments: Vec<Value> = arguments.into_iter().collect::<Result<_, _>>()?;
     if let (Syntax::Path(receiver), Some((read_with, value))) = (&*call.receiver, scope.methods.get(&name))
         && receiver.path.is_ident("self")
     {
@@ -215,6 +224,27 @@ fn method(arena: &Arena, call: &syn::ExprMethodCall, scope: &Scope) -> Result<Va
         (name, Value::Parts(mut parts)) => parts.remove(name).map(Value::Matrix).ok_or_else(unknown),
         _ => Err(unknown()),
     }
+}
+
+/// A table or one of its derivatives at an argument.
+fn called(
+    arena: &Arena,
+    (name, table): (&str, Pieces),
+    written: &Punctuated<Syntax, Comma>,
+    arguments: &[Result<Value, EmitError>],
+) -> Option<Value> {
+    let order = match (name, written.first()) {
+        ("value", _) => 0,
+        ("slope", _) => 1,
+        ("derivative", Some(Syntax::Lit(literal))) => match &literal.lit {
+            Lit::Int(order) => order.base10_parse().ok()?,
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let expected = if name == "derivative" { 2 } else { 1 };
+    let argument = arguments.last()?.as_ref().ok()?.scalar()?;
+    (arguments.len() == expected).then(|| Value::Scalar(Pieces { order, ..table }.call(arena, argument)))
 }
 
 /// The rows of a matrix that is given by columns.

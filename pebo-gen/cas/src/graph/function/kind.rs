@@ -45,4 +45,6 @@ pub enum Function {
     Max,
     /// Saturation at -1 and 1.
     Sat,
+    /// A table of the first argument, whose points are the others.
+    Table,
 }

@@ -7,6 +7,7 @@
 
 mod formulas;
 mod kind;
+pub mod pieces;
 
 use super::arena::Arena;
 use super::expr::Expr;
@@ -37,6 +38,8 @@ pub enum Value {
     Unary(fn(f64) -> f64),
     /// Two arguments.
     Binary(fn(f64, f64) -> f64),
+    /// An argument, and numbers.
+    Tabulated(fn(&[f64]) -> f64),
 }
 
 /// All properties of one function.
@@ -48,7 +51,7 @@ pub struct FunctionRow {
     pub name: &'static str,
     /// Other names that formulas may use.
     pub aliases: &'static [&'static str],
-    /// The number of arguments.
+    /// The number of arguments; 0 of a function that formulas cannot call by its name.
     pub arity: usize,
     /// The value at zero, where it is rational.
     pub at_zero: Option<i64>,
@@ -95,26 +98,26 @@ impl Function {
 
     /// The function of this name or alias.
     pub fn named(name: &str) -> Option<Self> {
-        TABLE.iter().find(|row| row.name == name || row.aliases.contains(&name)).map(|row| row.function)
+        Self::table().iter().find(|row| row.name == name || row.aliases.contains(&name)).map(|row| row.function)
     }
 
     /// The function that Rust's numbers have as this method.
     pub fn of_method(name: &str) -> Option<Self> {
-        TABLE.iter().find(|row| row.rust == name).map(|row| row.function)
+        Self::table().iter().find(|row| row.rust == name).map(|row| row.function)
     }
 
     /// Every name that formulas can call a function by.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        TABLE.iter().flat_map(|row| std::iter::once(row.name).chain(row.aliases.iter().copied()))
+        Self::table().iter().flat_map(|row| std::iter::once(row.name).chain(row.aliases.iter().copied()))
     }
 
-    /// All rows, in the order of the enumeration.
+    /// The rows of the functions that formulas call by their names, in the order of the enumeration.
     pub fn table() -> &'static [FunctionRow] {
-        &TABLE
+        &TABLE[..Self::Table as usize]
     }
 }
 
-static TABLE: [FunctionRow; 21] = [
+static TABLE: [FunctionRow; 22] = [
     FunctionRow {
         function: Function::Sin,
         name: "sin",
@@ -507,6 +510,24 @@ static TABLE: [FunctionRow; 21] = [
         }),
         inverse: None,
     },
+    FunctionRow {
+        function: Function::Table,
+        name: "table",
+        aliases: &[],
+        arity: 0,
+        at_zero: None,
+        rational: Some(pieces::rational),
+        parity: None,
+        rust: "value",
+        latex: r"\operatorname{table}",
+        value: Value::Tabulated(pieces::value),
+        enclosure: pieces::enclosure,
+        conditions: pieces::conditions,
+        smooth: Some(pieces::smooth),
+        derivative: pieces::derivative,
+        in_terms: None,
+        inverse: None,
+    },
 ];
 
 #[cfg(test)]
@@ -517,7 +538,7 @@ mod tests {
     fn the_table_is_indexed_by_the_enumeration() {
         for (index, row) in TABLE.iter().enumerate() {
             assert_eq!(row.function as usize, index, "{}", row.name);
-            assert_eq!(Function::named(row.name), Some(row.function));
+            assert_eq!(Function::named(row.name), (row.arity > 0).then_some(row.function));
         }
     }
 }

@@ -15,6 +15,7 @@ use crate::forms::number_powers::{as_power, printed_parts};
 use crate::graph::arena::Arena;
 use crate::graph::expr::{Expr, Node, Product, Sum, Symbol};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 
 /// The length up to which a formula is set, all repetitions included.
 const MOST_CHARACTERS: usize = 10_000_000;
@@ -153,11 +154,27 @@ impl Arena {
             Node::Symbol(symbol) => named(&self.name(symbol), |letter| letter),
             Node::Sum(sum) => self.typeset_sum(&sum, known),
             Node::Product(product) => self.typeset_product(&product, known),
-            Node::Call(function, arguments) => self.typeset_power(function, arguments[0], known).unwrap_or_else(|| {
-                let arguments: Vec<&str> = arguments.iter().map(|a| known[a].elements.as_str()).collect();
-                call(function, &arguments.join("<mo>,</mo>"))
-            }),
+            Node::Call(function, arguments) => {
+                let special = self.typeset_power(function, arguments[0], known);
+                special.or_else(|| self.typeset_table(expr, known)).unwrap_or_else(|| {
+                    let arguments: Vec<&str> = arguments.iter().map(|a| known[a].elements.as_str()).collect();
+                    call(function, &arguments.join("<mo>,</mo>"))
+                })
+            }
         }
+    }
+
+    /// A table at an argument, a prime for each derivative.
+    fn typeset_table(&self, call: Expr, known: &FxHashMap<Expr, Markup>) -> Option<Markup> {
+        let (table, argument) = Pieces::of(self, call)?;
+        let primes = "′".repeat(table.order);
+        let primed = |letter: String| match primes.as_str() {
+            "" => letter,
+            primes => format!("<msup>{letter}<mo>{primes}</mo></msup>"),
+        };
+        let name = named(&self.table_name(&Pieces { order: 0, ..table }), primed).elements;
+        let call = format!("<mrow>{name}{APPLY}{}</mrow>", parenthesised(&known[&argument].elements));
+        Some(Markup::new(call, Binding::Atom, Ends::Word))
     }
 
     /// A power of a number, if the function is one.

@@ -3,6 +3,7 @@
 use crate::Rational;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 use crate::number::rational::half;
 use crate::poly::Poly;
 use crate::tower::Fraction;
@@ -79,8 +80,20 @@ impl Signs<'_, '_> {
                 self.field.range_of_inverse(function, &arguments).ok()?.sign()
             }
             Node::Call(Function::Log, arguments) => self.by_logarithm(arguments[0]),
+            Node::Call(Function::Table, _) => self.by_table(expr),
             Node::Call(..) => None,
             _ => self.of_polynomial(&radicand?).ok()?.filter(|sign| *sign == Sign::Positive),
+        }
+    }
+
+    /// The sign of a table that has one for all arguments.
+    fn by_table(&self, expr: Expr) -> Option<Sign> {
+        let (least, most) = Pieces::of(self.field.arena, expr)?.0.range()?;
+        match (least.signum(), most.signum()) {
+            (1, _) => Some(Sign::Positive),
+            (_, -1) => Some(Sign::Negative),
+            (0, _) => Some(Sign::NonNegative),
+            _ => None,
         }
     }
 

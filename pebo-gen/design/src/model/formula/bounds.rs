@@ -3,7 +3,9 @@
 //! A formula from outside must end in a diagnostic, not in a stack overflow or in a power with a million digits.
 //! Definitions can still multiply sizes; the algebra bounds these.
 
-use super::{Formula, Operator, Term};
+use std::sync::Arc;
+
+use super::{Formula, Operator, Table, Term};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::Function;
 
@@ -79,6 +81,17 @@ impl SizedFormula {
         Self { formula: Formula { span, term: Term::Call(function, arguments) }, depth, degree: 1.0, parts }.grown()
     }
 
+    /// A table at an argument.
+    pub(in crate::model) fn table(
+        (table, order): (Arc<Table>, usize),
+        argument: Self,
+        span: Span,
+    ) -> Result<Self, Diagnostic> {
+        let (depth, parts) = (argument.depth, argument.parts);
+        let term = Term::Table(table, order, Box::new(argument.formula));
+        Self { formula: Formula { span, term }, depth, degree: 1.0, parts }.grown()
+    }
+
     /// The number of its parts.
     pub(in crate::model) fn parts(&self) -> usize {
         self.parts
@@ -137,6 +150,6 @@ fn constant(formula: &Formula) -> Option<f64> {
                 Operator::Power => left.powf(right),
             }
         }
-        Term::Name(_) | Term::Estimate(_) | Term::Call(..) => return None,
+        Term::Name(_) | Term::Estimate(_) | Term::Call(..) | Term::Table(..) => return None,
     })
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{Comparison, Formula, Operator, Relation, Term};
+use pebo_cas::graph::function::pieces::suffix;
 
 /// The binding strength of the outermost operator of a formula.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,7 +18,7 @@ enum Binding {
 impl Formula {
     fn binding(&self) -> Binding {
         match &self.term {
-            Term::Number(_) | Term::Name(_) | Term::Estimate(_) | Term::Call(..) => Binding::Atom,
+            Term::Number(_) | Term::Name(_) | Term::Estimate(_) | Term::Call(..) | Term::Table(..) => Binding::Atom,
             Term::Negative(_) => Binding::Sign,
             Term::Binary(Operator::Add | Operator::Subtract, ..) => Binding::Sum,
             Term::Binary(Operator::Multiply | Operator::Divide, ..) => Binding::Product,
@@ -54,6 +55,7 @@ impl fmt::Display for Formula {
                 f.write_str(sign)?;
                 right.write(f, on_right)
             }
+            Term::Table(table, order, argument) => write!(f, "{}{}({argument})", table.name, suffix(*order)),
             Term::Call(function, arguments) => {
                 write!(f, "{}(", function.row().name)?;
                 for (index, argument) in arguments.iter().enumerate() {
@@ -114,7 +116,7 @@ mod tests {
     #[test]
     fn a_comparison_keeps_its_chain() {
         let text = "0<d <= 1-e";
-        let read = parse_comparison(text, &SpanMap::verbatim(text, 0)).unwrap();
+        let read = parse_comparison(text, &SpanMap::verbatim(text, 0), &[]).unwrap();
         assert_eq!(read.to_string(), "0 < d <= 1 - e");
     }
 }

@@ -22,7 +22,8 @@ pub(super) fn call(name: &str, timed: bool) -> Option<String> {
     Some(match name.to_ascii_lowercase().as_str() {
         "if" | "ifelse" | "where" | "piecewise" | "cases" => BRANCHES.to_owned(),
         "interp" | "interp1" | "interp1d" | "interpolate" | "lookup" | "table" | "lut" | "spline" | "pchip" => {
-            "formulas have no tables: fit a function to the table, as a polynomial, and write that".to_owned()
+            "write its points under `define`, as `curve: {table: load, points: [[0, 0], [1, 2]]}`, and `curve` here"
+                .to_owned()
         }
         "der" | "diff" | "deriv" | "derivative" | "ddt" => {
             "formulas have no derivatives: write the formula of the derivative in its place".to_owned()

@@ -16,7 +16,7 @@
 //! included) is safe; numbers are bounded, and so are constant exponents; functions exist and have
 //! the right number of arguments. Names are *not* resolved: any name may be declared, and a
 //! declared name wins over the constant `pi` and over `t`, time in a simulation. A name is a
-//! function exactly where an opening parenthesis follows.
+//! function exactly where an opening parenthesis follows; the tables of a model are functions too.
 
 mod spans;
 
@@ -28,9 +28,12 @@ mod foreign;
 mod lexer;
 mod parser;
 mod sum;
+mod table;
 
 #[cfg(test)]
 mod tests;
+
+use std::sync::Arc;
 
 use crate::source::Span;
 use pebo_cas::Function;
@@ -39,8 +42,9 @@ pub(super) use bounds::SizedFormula;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub(super) use lexer::greek;
-pub use parser::{Estimates, parse_comparison, parse_formula};
+pub use parser::{Estimates, Permitted, parse_comparison, parse_formula};
 pub use spans::SpanMap;
+pub use table::{Interpolation, Table};
 
 /// The constant of a circle: this name, unless the model declares it.
 pub const PI: &str = "pi";
@@ -69,6 +73,8 @@ pub enum Term {
     Binary(Operator, Box<Formula>, Box<Formula>),
     /// A function applied to as many arguments as it takes.
     Call(Function, Vec<Formula>),
+    /// A table, or its derivative of that order, at an argument.
+    Table(Arc<Table>, usize, Box<Formula>),
 }
 
 /// An operator between two operands.
@@ -127,7 +133,7 @@ impl Formula {
     pub fn parts(&self) -> Vec<&Formula> {
         match &self.term {
             Term::Number(_) | Term::Name(_) | Term::Estimate(_) => Vec::new(),
-            Term::Negative(operand) => vec![operand],
+            Term::Negative(operand) | Term::Table(_, _, operand) => vec![operand],
             Term::Binary(_, left, right) => vec![left, right],
             Term::Call(_, arguments) => arguments.iter().collect(),
         }

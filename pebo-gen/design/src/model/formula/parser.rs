@@ -2,10 +2,12 @@
 //!
 //! One thing with `complaints`: its methods word what the parser finds, of the parser's own state.
 
+use std::sync::Arc;
+
 use super::bounds::SizedFormula;
 use super::lexer::{Kind, Lexer, Token};
 use super::sum::sum;
-use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, SpanMap, Term, complaints};
+use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, SpanMap, Table, Term, complaints};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::Function;
 
@@ -18,9 +20,28 @@ pub enum Estimates {
     Allowed,
 }
 
+/// What a formula may use beside names and functions.
+#[derive(Clone, Copy, Debug)]
+pub struct Permitted<'a> {
+    /// Estimates.
+    pub estimates: Estimates,
+    /// The tables that it may call.
+    pub tables: &'a [Arc<Table>],
+}
+
+impl From<Estimates> for Permitted<'_> {
+    fn from(estimates: Estimates) -> Self {
+        Self { estimates, tables: &[] }
+    }
+}
+
 /// Reads `text` as one formula.
-pub fn parse_formula(text: &str, spans: &SpanMap, estimates: Estimates) -> Result<Formula, Diagnostic> {
-    let mut parser = Parser::new(text, spans, estimates)?;
+pub fn parse_formula<'a>(
+    text: &'a str,
+    spans: &'a SpanMap,
+    permitted: impl Into<Permitted<'a>>,
+) -> Result<Formula, Diagnostic> {
+    let mut parser = Parser::new(text, spans, permitted.into())?;
     let formula = parser.expression(SUM)?.formula;
     match parser.next.kind {
         Kind::End => Ok(formula),
@@ -32,8 +53,8 @@ pub fn parse_formula(text: &str, spans: &SpanMap, estimates: Estimates) -> Resul
 }
 
 /// Reads `text` as a chain of comparisons.
-pub fn parse_comparison(text: &str, spans: &SpanMap) -> Result<Comparison, Diagnostic> {
-    let mut parser = Parser::new(text, spans, Estimates::Refused)?;
+pub fn parse_comparison(text: &str, spans: &SpanMap, tables: &[Arc<Table>]) -> Result<Comparison, Diagnostic> {
+    let mut parser = Parser::new(text, spans, Permitted { estimates: Estimates::Refused, tables })?;
     let first = parser.expression(SUM)?.formula;
     let mut rest = Vec::new();
     while let Kind::Relation(relation) = parser.next.kind {
@@ -62,7 +83,7 @@ const POWER: u8 = 4;
 /// whose frames on the stack stay small.
 pub(super) struct Parser<'a> {
     pub(super) lexer: Lexer<'a>,
-    estimates: Estimates,
+    permitted: Permitted<'a>,
     /// The token to be read next, and the one before it.
     pub(super) next: Token,
     pub(super) last: Token,
@@ -71,7 +92,7 @@ pub(super) struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(text: &'a str, spans: &'a SpanMap, estimates: Estimates) -> Result<Self, Diagnostic> {
+    fn new(text: &'a str, spans: &'a SpanMap, permitted: Permitted<'a>) -> Result<Self, Diagnostic> {
         if text.len() > LENGTH_LIMIT {
             let message = format!("the formula has {} bytes", text.len());
             return Err(Diagnostic::error(Code::FormulaTooLarge, spans.whole(), message)
@@ -83,7 +104,7 @@ impl<'a> Parser<'a> {
             let message = "a formula is missing".to_owned();
             return Err(Diagnostic::error(Code::EmptyFormula, spans.whole(), message).help("write 0 for zero"));
         }
-        Ok(Self { lexer, estimates, next, last: next, depth: 0 })
+        Ok(Self { lexer, permitted, next, last: next, depth: 0 })
     }
 
     fn advance(&mut self) -> Result<Token, Diagnostic> {
@@ -157,15 +178,17 @@ impl<'a> Parser<'a> {
         if name == "hat" {
             return self.estimate(span);
         }
-        match Function::named(name) {
-            Some(function) => self.call(function, span),
-            None => Err(complaints::unknown_function(name, span, self.lexer.rest())),
+        let table = || self.permitted.tables.iter().find_map(|table| Some((Arc::clone(table), table.order(name)?)));
+        match (Function::named(name), table()) {
+            (Some(function), _) => self.call(function, span),
+            (None, Some(table)) => self.table(table, span),
+            (None, None) => Err(complaints::unknown_function(name, span, self.lexer.rest())),
         }
     }
 
     /// `hat(x)`, from the parenthesis on.
     fn estimate(&mut self, hat: Span) -> Result<SizedFormula, Diagnostic> {
-        if self.estimates == Estimates::Refused {
+        if self.permitted.estimates == Estimates::Refused {
             return Err(complaints::no_estimate(hat));
         }
         let open = self.advance()?;
@@ -196,6 +219,14 @@ impl<'a> Parser<'a> {
             return Err(complaints::argument_count(function, arguments.len(), span));
         }
         SizedFormula::call(function, arguments, span)
+    }
+
+    /// A table or its slope, from the parenthesis on.
+    fn table(&mut self, table: (Arc<Table>, usize), name: Span) -> Result<SizedFormula, Diagnostic> {
+        let open = self.advance()?;
+        let argument = self.expression(SUM)?;
+        let span = name.to(self.close(open)?);
+        SizedFormula::table(table, argument, span)
     }
 
     /// Reads the parenthesis that closes `open`; returns the span of the whole.

@@ -12,7 +12,7 @@ fn parse(text: &str) -> Result<Formula, Diagnostic> {
 }
 
 fn compare(text: &str) -> Result<Comparison, Diagnostic> {
-    parse_comparison(text, &SpanMap::verbatim(text, 0))
+    parse_comparison(text, &SpanMap::verbatim(text, 0), &[])
 }
 
 /// The formula with all its parentheses.
@@ -32,6 +32,7 @@ fn explicit(formula: &Formula) -> String {
             };
             format!("({}{sign}{})", explicit(left), explicit(right))
         }
+        Term::Table(..) => formula.to_string(),
         Term::Call(function, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(explicit).collect();
             format!("{}({})", function.row().name, arguments.join(","))

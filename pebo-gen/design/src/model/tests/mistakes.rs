@@ -1,6 +1,7 @@
 //! One mistake, one diagnostic, at the right span.
 
 use super::{CUK, REST, parse};
+use crate::plant::Plant;
 use crate::source::Code::{self, *};
 
 /// The example with one text replaced: the only diagnostic's code, and the underlined text.
@@ -123,6 +124,40 @@ fn each_gives_one_diagnostic() {
     }
 }
 
+/// A table as its author may write it: the diagnostic's code, and the underlined text.
+#[test]
+fn a_table_is_read_or_refused_where_it_is_wrong() {
+    let cases = [
+        ("{table: v2, points: [[0, 1], [2, 0.5]]}", None),
+        ("{table: v2, points: [[0, 1], [2, 0.5]], interpolation: linear}", None),
+        ("{table: v2, points: [[0, 1], [0, 0.5]]}", Some((WrongShape, "0"))),
+        ("{table: v2, points: [[0, 1, 3], [1, 0.5]]}", Some((WrongShape, "0"))),
+        ("{table: v2, points: [[0, 1], [x, 0.5]]}", Some((MalformedNumber, "x"))),
+        ("{table: v2, points: [[0, 1]]}", Some((WrongShape, "t"))),
+        ("{table: v2, points: {0: 1, 1: 2}}", Some((WrongShape, "{0: 1, 1: 2}"))),
+        ("{table: v2}", Some((MissingKey, "{table: v2}"))),
+        ("{points: [[0, 1], [1, 2]]}", Some((MissingKey, "{points: [[0, 1], [1, 2]]}"))),
+        ("{table: nothing, points: [[0, 1], [1, 2]]}", Some((UnknownName, "nothing"))),
+        ("{table: t(v2), points: [[0, 1], [1, 2]]}", None),
+        ("{table: v2, points: [[0, 1], [1, 2]], interpolation: spline}", Some((WrongChoice, "spline"))),
+        ("{0: 1, 1: 2}", Some((WrongShape, "{0: 1, 1: 2}"))),
+    ];
+    for (table, expected) in cases {
+        let text = CUK.replacen("phi:", &format!("define: {{t: {table}}}\nphi:"), 1).replacen("d*v2", "d*t", 1);
+        let found = match parse(&text) {
+            Ok(model) => Plant::resolve(&model).map(|_| ()),
+            Err(found) => Err(found),
+        };
+        let first = found.err().and_then(|found| found.into_iter().next());
+        let shown = first.map(|found| (found.code, text[found.primary.span.range()].to_owned()));
+        assert_eq!(shown, expected.map(|(code, text)| (code, text.to_owned())), "{table}");
+    }
+    let points: Vec<String> = (0..51).map(|at| format!("[{at}, {at}]")).collect();
+    let long = format!("define: {{t: {{table: v2, points: [{}]}}}}\nphi:", points.join(", "));
+    let found = parse(&CUK.replacen("phi:", &long, 1)).expect_err("too many points");
+    assert!(found[0].message.contains("at most 50 points"), "{}", found[0].message);
+}
+
 #[test]
 fn independent_mistakes_are_all_found() {
     let text = CUK
@@ -198,11 +233,11 @@ fn a_help_is_the_cure() {
         ("u: [v]\n", "u: [v]\nassume: [v > 0 and v < 24]\n", UnexpectedToken, "a chain, as `0 < v < 24`"),
         ("u: [v]\n", "u: [v]\nassume: [v > 0 && v < 24]\n", UnexpectedCharacter, "a chain, as `0 < v < 24`"),
         ("{i: (v -", "{i: (v(t - R) -", UnknownFunction, "a delayed input is an input of its own"),
-        ("- load)", "- interp(load))", UnknownFunction, "formulas have no tables"),
+        ("- load)", "- interp(load))", UnknownFunction, "write its points under `define`"),
         ("- load)", "- if(load > 0))", UnknownFunction, "use max, min, sat, sign or abs"),
         ("- load)", "- load*|omega|)", UnexpectedCharacter, "the absolute value is `abs(omega)`"),
         ("- load)", "- log10(load))", UnknownFunction, "`log(a)/log(10)`"),
-        ("load: 0", "load: {0: 1, 1: 2}", WrongShape, "fit a function to a table"),
+        ("load: 0", "load: {0: 1, 1: 2}", WrongShape, "a table has a name"),
     ];
     for (from, to, code, cure) in cases {
         let (found, help) = of_drive(from, to);

@@ -29,7 +29,7 @@ pub(super) struct Document {
     pub(super) w: Vec<Text>,
     pub(super) class: Option<Spanned<CascadeClass>>,
     pub(super) regression: Option<Spanned<RegressionForm>>,
-    pub(super) define: Vec<Entry<Text>>,
+    pub(super) define: Vec<Entry<Definition>>,
     pub(super) assume: Vec<Text>,
     pub(super) f_x: Vec<Entry<Text>>,
     pub(super) f_y: Vec<Entry<Text>>,
@@ -45,6 +45,23 @@ pub(super) struct Document {
     pub(super) lti: Option<Lti<Text>>,
     pub(super) mechanical: Option<Mechanical<Text>>,
     pub(super) electromechanical: Option<Electromechanical<Text>>,
+}
+
+/// A formula, or a table.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Definition {
+    Formula(Text),
+    Table(Table),
+}
+
+/// A table; what is missing has its diagnostic.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Table {
+    pub(super) table: Option<Text>,
+    pub(super) points: Vec<Vec<Spanned<Decimal>>>,
+    pub(super) interpolation: Option<Text>,
 }
 
 /// The section `simulation`.

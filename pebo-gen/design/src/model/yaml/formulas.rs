@@ -1,17 +1,23 @@
 //! Parses a document's texts to formulas.
 
-use super::document::{self, Document, Text};
+use super::document::{self, Definition, Document, Text};
 use crate::model::class::{Class, Electromechanical, Lti, Mechanical};
-use crate::model::formula::{Comparison, Decimal, Estimates, Formula, SpanMap, Term, parse_comparison, parse_formula};
+use std::sync::Arc;
+
+use crate::model::formula::{
+    Comparison, Decimal, Estimates, Formula, Interpolation, Permitted, SpanMap, Table, Term, parse_comparison,
+    parse_formula,
+};
 use crate::model::recording::Recording;
 use crate::model::spanned::Entry;
 use crate::model::written::{Baseline, Equations, Kalman, Luenberger, Model, Panel, Piece, Simulation};
-use crate::source::{Diagnostics, Source};
+use crate::source::{Diagnostics, Source, Span};
 
 /// Parses every formula of the document; nothing if the model has no name.
 pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagnostics) -> Option<Model> {
-    let mut pass = FormulaParser { source, diagnostics, estimates: Estimates::Refused };
-    let define = pass.entries(document.define);
+    let tables = tables(&document.define, diagnostics);
+    let mut pass = FormulaParser { source, diagnostics, estimates: Estimates::Refused, tables };
+    let define = document.define.into_iter().map(|entry| pass.definition(entry)).collect();
     let assume = document.assume.iter().filter_map(|text| pass.comparison(text)).collect();
     let f_x = pass.entries(document.f_x);
     let f_y = pass.entries(document.f_y);
@@ -57,20 +63,55 @@ struct FormulaParser<'a> {
     diagnostics: &'a mut Diagnostics,
     /// Permission for `hat()` in the section at hand.
     estimates: Estimates,
+    /// The tables of the model.
+    tables: Vec<Arc<Table>>,
+}
+
+/// The tables among definitions.
+fn tables(define: &[Entry<Definition>], diagnostics: &mut Diagnostics) -> Vec<Arc<Table>> {
+    let mut found = Vec::new();
+    for entry in define {
+        let Definition::Table(table) = &entry.value else { continue };
+        let kind = table.interpolation.as_ref().and_then(|text| Interpolation::from_name(&text.value));
+        // What is missing has its diagnostic.
+        let read = !table.points.is_empty() && table.table.is_some();
+        let through = || Table::through(&entry.name.value, &table.points, (kind.unwrap_or_default(), entry.name.span));
+        found.extend(read.then(through).and_then(|table| diagnostics.keep(table)).map(Arc::new));
+    }
+    found
 }
 
 impl FormulaParser<'_> {
     fn formula(&mut self, text: &Text) -> Formula {
         let spans = SpanMap::align(&text.value, text.span, self.source);
-        let parsed = parse_formula(&text.value, &spans, self.estimates);
-        self.diagnostics
-            .keep(parsed)
-            .unwrap_or_else(|| Formula { span: text.span, term: Term::Number(Decimal::zero()) })
+        let permitted = Permitted { estimates: self.estimates, tables: &self.tables };
+        let parsed = parse_formula(&text.value, &spans, permitted);
+        self.diagnostics.keep(parsed).unwrap_or_else(|| nothing(text.span))
+    }
+
+    /// A formula with a name, or a table at its argument.
+    fn definition(&mut self, entry: Entry<Definition>) -> Entry<Formula> {
+        let Entry { name, value } = entry;
+        let value = match value {
+            Definition::Formula(text) => self.formula(&text),
+            Definition::Table(table) => {
+                let own = self.tables.iter().find(|own| own.name == name.value).map(Arc::clone);
+                let argument = table.table.map(|text| self.formula(&text));
+                match own.zip(argument) {
+                    Some((own, argument)) => {
+                        let span = argument.span;
+                        Formula { span, term: Term::Table(own, 0, Box::new(argument)) }
+                    }
+                    None => nothing(name.span),
+                }
+            }
+        };
+        Entry { name, value }
     }
 
     fn comparison(&mut self, text: &Text) -> Option<Comparison> {
         let spans = SpanMap::align(&text.value, text.span, self.source);
-        self.diagnostics.keep(parse_comparison(&text.value, &spans))
+        self.diagnostics.keep(parse_comparison(&text.value, &spans, &self.tables))
     }
 
     fn list(&mut self, texts: &[Text]) -> Vec<Formula> {
@@ -165,4 +206,9 @@ impl FormulaParser<'_> {
         let scale = panel.scale.map(|scale| scale.value).unwrap_or_default();
         Some(Panel { title: panel.title?, unit: panel.unit, curves, scale })
     }
+}
+
+/// A stand-in for a formula whose diagnostic is out.
+fn nothing(span: Span) -> Formula {
+    Formula { span, term: Term::Number(Decimal::zero()) }
 }

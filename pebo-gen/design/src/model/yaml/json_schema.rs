@@ -136,6 +136,7 @@ fn shape(shape: &Shape) -> Node {
         Shape::Signal => either([self::shape(&Shape::Formula), map(self::shape(&Shape::Formula))]),
         Shape::Record(keys) => record(keys),
         Shape::NumberOr(keys) => either([self::shape(&Shape::Number), record(keys)]),
+        Shape::FormulaOr(keys) => either([self::shape(&Shape::Formula), record(keys)]),
         Shape::Matrix => {
             let row = || Node { least_items: Some(1), ..list(self::shape(&Shape::Formula)) };
             either([self::shape(&Shape::Formula), row(), Node { least_items: Some(1), ..list(row()) }])

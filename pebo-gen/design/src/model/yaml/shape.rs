@@ -46,7 +46,9 @@ struct Fitter<'a> {
 impl<'a> Fitter<'a> {
     fn fit(&mut self, node: &'a Node, shape: &'static Shape) -> Option<Value> {
         match (shape, &node.content) {
-            (Shape::Text | Shape::Formula, Content::Scalar(text)) => Some(spanned(text, node.span)),
+            (Shape::Text | Shape::Formula | Shape::FormulaOr(_), Content::Scalar(text)) => {
+                Some(spanned(text, node.span))
+            }
             (Shape::Number, Content::Scalar(text)) => self.number(text, node.span),
             (Shape::Choice(words), Content::Scalar(text)) => self.choice(words, text, node.span),
             (Shape::List(item) | Shape::OneOrMore(item), Content::List(items)) => {
@@ -84,7 +86,8 @@ impl<'a> Fitter<'a> {
                 let start = self.number(&key.text, key.span)?;
                 Some(piece(start, self.fit(node, &Shape::Formula)?))
             }))),
-            (Shape::Record(keys) | Shape::NumberOr(keys), Content::Map(entries)) => {
+            (Shape::FormulaOr(_), Content::Map(_)) if is_course(node) => self.refuse(node, &Shape::Formula),
+            (Shape::Record(keys) | Shape::NumberOr(keys) | Shape::FormulaOr(keys), Content::Map(entries)) => {
                 Some(self.record(entries, keys, node.span))
             }
             (Shape::NumberOr([first, ..]), Content::Scalar(text)) => {
@@ -205,7 +208,7 @@ impl<'a> Fitter<'a> {
     /// Reports a value of the wrong shape: there is nothing, or a stand-in for a formula, so that the entry it belongs
     /// to is not missing as well.
     fn refuse(&mut self, node: &Node, shape: &Shape) -> Option<Value> {
-        let stand_in = matches!(shape, Shape::Formula).then(|| spanned("0", node.span));
+        let stand_in = matches!(shape, Shape::Formula | Shape::FormulaOr(_)).then(|| spanned("0", node.span));
         let found = match &node.content {
             Content::Null => "nothing".to_owned(),
             Content::Scalar(text) => quoted(text),
@@ -217,7 +220,8 @@ impl<'a> Fitter<'a> {
         let help = if stand_in.is_some() && is_course(node) {
             course(self.key, self.entry)
         } else {
-            let written = matches!(shape, Shape::List(_)).then(|| as_list(self.key, node)).flatten();
+            let is_plain = matches!(shape, Shape::List(Shape::Text | Shape::Number | Shape::Formula));
+            let written = is_plain.then(|| as_list(self.key, node)).flatten();
             format!("write {}", written.unwrap_or_else(|| format!("for example `{}`", self.example)))
         };
         self.diagnostics.push(Diagnostic::error(Code::WrongShape, node.span, message).help(help));
@@ -235,7 +239,7 @@ fn course(key: &str, entry: Option<&str>) -> String {
         ("initial", _) => "write a number: the values of a signal over time stand in `signals`, those of a parameter or of a \
                            constant state in `plant`"
             .to_owned(),
-        _ => "formulas have no tables: fit a function to a table, as a polynomial, and write that; what changes over time is an \
+        _ => "a table has a name: `define: {ocv: {table: soc, points: [[0, 3.0], [1, 4.2]]}}`; what changes over time is an \
               input, whose course stands in `signals` of the section `simulation`"
             .to_owned(),
     }
@@ -281,6 +285,9 @@ fn describe(shape: &Shape) -> String {
         Shape::NumberOr(keys) => {
             format!("a number, or a map with keys of {}", listed(keys.iter().map(|key| key.name)))
         }
+        Shape::FormulaOr(keys) => {
+            format!("a formula, or a map with keys of {}", listed(keys.iter().map(|key| key.name)))
+        }
         Shape::Matrix => "a matrix, as a list of rows".to_owned(),
     }
 }
@@ -289,7 +296,7 @@ fn plural(shape: &Shape) -> &'static str {
     match shape {
         Shape::Text => "names",
         Shape::Number => "numbers",
-        Shape::Formula => "formulas",
+        Shape::Formula | Shape::FormulaOr(_) => "formulas",
         Shape::Record(_) => "maps",
         _ => "values",
     }

@@ -45,7 +45,8 @@ impl Trajectories {
                 "the unknowns are identified on almost every trajectory; it was not decided whether the inputs have to vary"
             }
         };
-        let blind = self.blind.iter().map(|blind| blind.line(plant));
+        let (decided, open): (Vec<_>, Vec<_>) = self.blind.iter().partition(|blind| blind.is_decided());
+        let blind = decided.into_iter().map(|blind| blind.line(plant)).chain(undecided(plant, &open));
         let parameters = (!self.parameters && !plant.parameters.is_empty())
             .then(|| "it was not worked out for which special values of the parameters this is not so".to_owned());
         let others = (!self.everywhere).then(|| match self.blind.as_slice() {
@@ -76,6 +77,24 @@ impl Trajectories {
     }
 }
 
+/// The lines on trajectories of which nothing was decided: several at which one formula is zero in one.
+fn undecided(plant: &Plant, open: &[&BlindTrajectory]) -> Vec<String> {
+    let line = |condition: String| format!("while {condition}, it was not decided what is identified");
+    let is_plain = |blind: &&&BlindTrajectory| {
+        let TrajectoryCondition { sides, still, zeros } = &blind.condition;
+        sides.is_empty() && *still == Still::Nothing && zeros.len() == 1
+    };
+    let plain: Vec<String> = open.iter().filter(is_plain).map(|blind| blind.condition.worded(plant)).collect();
+    if plain.len() < MANY {
+        return open.iter().map(|blind| line(blind.condition.worded(plant))).collect();
+    }
+    let others = open.iter().filter(|blind| !is_plain(blind)).map(|blind| line(blind.condition.worded(plant)));
+    std::iter::once(line(format!("one of {} holds", plain.join(", ")))).chain(others).collect()
+}
+
+/// So many lines of one kind are one: a table has one for each point.
+const MANY: usize = 4;
+
 impl BlindTrajectory {
     /// The trajectory.
     pub fn condition(&self, plant: &Plant) -> String {
@@ -101,9 +120,6 @@ impl BlindTrajectory {
 
     fn line(&self, plant: &Plant) -> String {
         let condition = self.condition.worded(plant);
-        if !self.is_decided() {
-            return format!("while {condition}, it was not decided what is identified");
-        }
         let (known, mut of_states) = self.combinations(plant);
         let (short, long): (Vec<Expr>, Vec<Expr>) =
             known.into_iter().partition(|combination| plant.arena.print(*combination).len() <= LONGEST);
@@ -177,8 +193,22 @@ fn equation(plant: &Plant, zero: Expr) -> String {
     format!("{} = 0", arena.print(zero))
 }
 
+/// The side of a number on which a symbol is, if the sign is of the two: `soc > 0.8`.
+fn threshold(plant: &Plant, expr: Expr, side: Side) -> Option<String> {
+    let arena = &plant.arena;
+    let Node::Sum(sum) = arena.node(expr) else { return None };
+    let [(term, slope)] = sum.terms.as_slice() else { return None };
+    arena.as_symbol(*term)?;
+    let at = arena.number(-&sum.constant.checked_div(slope)?);
+    let is_above = (side == Side::Positive) != slope.is_negative();
+    Some(format!("{} {} {}", arena.print(*term), if is_above { ">" } else { "<" }, arena.print(at)))
+}
+
 /// Signs, with formulas as code.
 pub fn on_sides(plant: &Plant, sides: &[(Expr, Side)]) -> String {
-    let side = |(expr, side): &(Expr, Side)| format!("`{} {}`", plant.arena.print(*expr), side.sign());
+    let side = |(expr, side): &(Expr, Side)| match threshold(plant, *expr, *side) {
+        Some(threshold) => format!("`{threshold}`"),
+        None => format!("`{} {}`", plant.arena.print(*expr), side.sign()),
+    };
     sides.iter().map(side).collect::<Vec<_>>().join(" and ")
 }

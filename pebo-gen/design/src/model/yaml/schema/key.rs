@@ -29,6 +29,8 @@ pub(crate) enum Shape {
     Record(&'static [Key]),
     /// A map with these keys, or a number in place of the first of them.
     NumberOr(&'static [Key]),
+    /// A map with these keys, or a formula.
+    FormulaOr(&'static [Key]),
     /// A matrix of formulas: rows, or a plain list, or a single one; the meaning of these depends on the size that is
     /// wanted.
     Matrix,

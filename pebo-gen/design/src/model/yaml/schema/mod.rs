@@ -4,6 +4,7 @@
 
 mod key;
 
+use crate::model::formula::Interpolation;
 use crate::model::observer::{Estimator, Form};
 use crate::model::{Baseline, CascadeClass, Class, Recording, RegressionForm};
 
@@ -61,6 +62,23 @@ pub(super) const OTHERS: &[(&str, &str)] = &[
     ("t_end", "duration"),
 ];
 
+/// A table under `define`.
+const TABLE: &[Key] = &[
+    required("table", Shape::Formula, "table: soc", "The argument of the table"),
+    required(
+        "points",
+        Shape::List(&NUMBERS),
+        "points: [[0, 3.0], [0.5, 3.7], [1, 4.2]]",
+        "Arguments, ascending, each with its value; beyond the first and the last the table goes on with its slope",
+    ),
+    optional(
+        "interpolation",
+        Shape::Choice(Interpolation::NAMES),
+        "interpolation: linear",
+        "The function between the points: monotone cubics (cubic) if left out, or lines (linear)",
+    ),
+];
+
 /// The file.
 pub(super) const MODEL: &[Key] = &[
     required(
@@ -97,7 +115,12 @@ pub(super) const MODEL: &[Key] = &[
          outputs are used, those that are not linear in functions of theta to first order at the estimate, which then \
          converges from a neighbourhood",
     ),
-    optional("define", RATES, "define: {p: v2*i1}", "Names for parts of formulas, in any order"),
+    optional(
+        "define",
+        Shape::Map(&Shape::FormulaOr(TABLE)),
+        "define: {p: v2*i1}",
+        "Names for parts of formulas and for tables, in any order",
+    ),
     optional("assume", FORMULAS, "assume: [L1 > 0, 0 < d < 1]", "Inequalities that hold wherever the plant operates"),
     key(
         Role::RequiredOrByClass,
