@@ -12,6 +12,8 @@
 mod answer;
 #[cfg(feature = "yaml")]
 mod builder;
+#[cfg(feature = "simulate")]
+mod c_face;
 #[cfg(feature = "answer")]
 mod certificate;
 mod derived;
@@ -28,6 +30,8 @@ pub use answer::{Answer, Request, Section, Solution, Stage, Standing, TypesetFor
 pub use answer::{FinalError, Run, RunRequest, Tape, fitted, replay};
 #[cfg(feature = "yaml")]
 pub use builder::{BuildError, Builder, BuiltModel};
+#[cfg(feature = "simulate")]
+pub use c_face::CProject;
 pub use derived::Derived;
 #[cfg(feature = "yaml")]
 pub use derived::{derive, derive_within};

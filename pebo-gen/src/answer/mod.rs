@@ -39,11 +39,17 @@ use serde::Serialize;
 
 use request::Explanation;
 
+#[cfg(feature = "simulate")]
+use crate::c_face::{CProject, Samples};
 use crate::certificate::certificate;
 use crate::derived::{Derived, derive_within};
 use crate::emit::Emitted;
+#[cfg(feature = "simulate")]
+use crate::emit::Scalar;
 use crate::report::{self, Report};
 use pebo_design::analysis::Outcome;
+#[cfg(feature = "simulate")]
+use pebo_design::source::Code;
 use pebo_design::source::{Diagnostic, Source};
 #[cfg(feature = "simulate")]
 use pebo_lab::recording::Replayed;
@@ -76,6 +82,9 @@ pub struct Answer {
     pub diagnostics: Vec<Diagnostic>,
     /// The observer as Rust, if it was requested and everything is proved.
     pub emitted: Option<Emitted>,
+    /// The crate with a C face around that observer, if it was requested and the settings of the observer are complete.
+    #[cfg(feature = "simulate")]
+    pub c_project: Option<CProject>,
     /// The derivation as `MathML`, if it was requested.
     pub mathml: Option<TypesetFormulas>,
     /// A Python script that proves the claims again with `SymPy`, if it was requested and everything is proved.
@@ -170,6 +179,10 @@ impl Answer {
             match derived.admitted(scalar) {
                 Ok(emitted) => {
                     self.diagnostics.extend(derived.cautions(&emitted, scalar));
+                    #[cfg(feature = "simulate")]
+                    if request.c_project {
+                        self.add_c_project(derived, &emitted, scalar);
+                    }
                     self.emitted = Some(emitted);
                 }
                 Err(found) => self.refuse(Standing::of_emission(&found), found),
@@ -184,6 +197,20 @@ impl Answer {
                 }
                 Err((standing, found)) => self.refuse(standing, found),
             }
+        }
+    }
+
+    /// Adds the crate with a C face.
+    #[cfg(feature = "simulate")]
+    fn add_c_project(&mut self, derived: &Derived, emitted: &Emitted, scalar: Scalar) {
+        let Derived { plant, derivation, model, .. } = derived;
+        self.c_project = CProject::of(plant, derivation, (emitted, scalar), &Samples::of(derived));
+        if self.c_project.is_none() {
+            let message =
+                format!("`{}` has no observer to put behind a C face: its settings are incomplete", plant.name);
+            let incomplete = Diagnostic::error(Code::CannotEmit, model.name.span, message)
+                .help("add a section `observer`, or a section `simulation` that settings can be worked out from");
+            self.refuse(Standing::Refused, vec![incomplete]);
         }
     }
 
@@ -210,6 +237,8 @@ impl Answer {
             summary,
             diagnostics,
             emitted: None,
+            #[cfg(feature = "simulate")]
+            c_project: None,
             mathml: None,
             certificate: None,
             page: None,

@@ -38,6 +38,8 @@ pub struct Request {
     pub(super) certificate: bool,
     pub(super) explained: Explanation,
     #[cfg(feature = "simulate")]
+    pub(super) c_project: bool,
+    #[cfg(feature = "simulate")]
     pub(super) run: Option<RunRequest>,
 }
 
@@ -97,6 +99,8 @@ impl Request {
             mathml: false,
             certificate: false,
             explained: Explanation::Not,
+            #[cfg(feature = "simulate")]
+            c_project: false,
             #[cfg(feature = "simulate")]
             run: None,
         }
@@ -158,6 +162,14 @@ impl Request {
     #[must_use]
     pub fn sections(mut self) -> Self {
         self.explained = Explanation::Sections;
+        self
+    }
+
+    /// To write a crate with a C face around the observer too, if that is written.
+    #[cfg(feature = "simulate")]
+    #[must_use]
+    pub fn c_project(mut self) -> Self {
+        self.c_project = true;
         self
     }
 

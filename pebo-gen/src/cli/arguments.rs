@@ -14,6 +14,7 @@ const EXAMPLES: &str = "\
 Examples:
   pebo-gen models/cuk.yaml -o src/cuk.rs          prove, then write the observer
   pebo-gen models/*.yaml -o src/observers/        the same for several models, a file each
+  pebo-gen models/cuk.yaml --c cuk                a crate that C projects link: library, header, example
   pebo-gen check models/*.yaml --format json      verdicts for programs, a line each
   pebo-gen simulate models/cuk.yaml --plot cuk.svg
   pebo-gen replay models/cuk.yaml --data log.csv -o estimates.csv
@@ -51,7 +52,7 @@ impl Arguments {
         let matches = Self::command().try_get_matches()?;
         if let Some(command) = matches.subcommand_name() {
             let given = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
-            if let Some(id) = ["output", "scalar"].into_iter().find(given) {
+            if let Some(id) = ["output", "c", "scalar"].into_iter().find(given) {
                 let message = format!("`--{id}` belongs to `pebo-gen MODEL`, and cannot stand before `{command}`");
                 return Err(Self::command().error(ErrorKind::ArgumentConflict, message));
             }
@@ -154,6 +155,10 @@ pub(super) struct GenerateOptions {
     /// Write the Rust code to this file instead of standard output; for several models, to this folder
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Write a crate to this folder instead, which builds the observer of one model as a static library with a C header,
+    /// with a Makefile, a list for CMake and an example
+    #[arg(long, value_name = "DIR", conflicts_with = "output")]
+    pub(super) c: Option<PathBuf>,
     /// The floating-point type of the emitted code
     #[arg(long, value_parser = scalars(), default_value = Scalar::default().name())]
     pub(super) scalar: Scalar,

@@ -118,6 +118,30 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Diagnostic> {
     written.map_err(|error| unwritten(path, &error))
 }
 
+/// Writes files into a folder, which is made: each by its path in it and its text. None gets its name before all are
+/// written.
+pub(super) fn write_all(folder: &Path, files: &[(String, String)]) -> Result<(), Diagnostic> {
+    if folder.is_file() {
+        let message = format!("cannot write {}: it is a file, and a folder is expected", folder.display());
+        return Err(
+            Diagnostic::error(Code::CannotWrite, Span::NOWHERE, message).help("name a folder, or remove the file")
+        );
+    }
+    let mut written = Vec::new();
+    for (path, text) in files {
+        let path = folder.join(path);
+        let whole = || {
+            std::fs::create_dir_all(self::folder(&path))?;
+            let mut file = NamedTempFile::new_in(self::folder(&path))?;
+            file.write_all(text.as_bytes())?;
+            Ok(file)
+        };
+        let file = whole().map_err(|error| unwritten(&path, &error))?;
+        written.push((path, file));
+    }
+    written.into_iter().try_for_each(|(path, file)| put(file, &path).map_err(|error| unwritten(&path, &error)))
+}
+
 /// The target of a path.
 enum Target {
     /// A device or a pipe, opened.

@@ -1,6 +1,7 @@
-//! `pebo-gen MODEL`: the verdict to standard error, the Rust code to a file or standard output.
+//! `pebo-gen MODEL`: the verdict to standard error, the Rust code to a file or standard output, or a crate around it to a
+//! folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 use pebo_gen::Standing;
@@ -17,6 +18,12 @@ pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {
         return Standing::Malformed;
     }
     let several = options.models.len() > 1;
+    if several && options.c.is_some() {
+        terminal::say(
+            "error: `--c` writes the crate of one model\n  = help: call pebo-gen for each model, with a folder of its own\n",
+        );
+        return Standing::Malformed;
+    }
     if several && options.output.as_deref().is_none_or(|output| !output.is_dir()) {
         terminal::say(
             "error: several models need a folder to write to\n  = help: make it, and name it with `-o FOLDER`\n",
@@ -36,20 +43,31 @@ fn misspelt(path: &Path) -> Option<(&str, String)> {
 }
 
 fn one(path: &Path, options: &GenerateOptions, limit: Limit) -> Standing {
-    let (source, answer) = files::answer(path, limit.request().emit(options.scalar));
+    let request = limit.request().emit(options.scalar);
+    let request = if options.c.is_some() { request.c_project() } else { request };
+    let (source, answer) = files::answer(path, request);
     terminal::say(&answer.summary);
     terminal::report(&answer.diagnostics, &source);
     let Some(emitted) = answer.emitted else { return answer.standing };
-    let output = match options.output.as_deref() {
-        Some(folder) if folder.is_dir() => folder.join(format!("{}.rs", answer.report.model)),
-        Some(file) => file.to_owned(),
-        None => Path::new("-").to_owned(),
+    let written = match (options.c.as_deref(), answer.c_project) {
+        (Some(folder), Some(project)) => files::write_all(folder, &project.files),
+        (Some(_), None) => return answer.standing,
+        (None, _) => files::write(&output(options, &answer.report.model), &emitted.text),
     };
-    match files::write(&output, &emitted.text) {
+    match written {
         Ok(()) => answer.standing,
         Err(diagnostic) => {
             terminal::report(&[diagnostic], &source);
             Standing::Malformed
         }
+    }
+}
+
+/// Where the code of a model of this name goes.
+fn output(options: &GenerateOptions, model: &str) -> PathBuf {
+    match options.output.as_deref() {
+        Some(folder) if folder.is_dir() => folder.join(format!("{model}.rs")),
+        Some(file) => file.to_owned(),
+        None => PathBuf::from("-"),
     }
 }

@@ -21,9 +21,12 @@ pub(super) const LAYERS: &[(&str, &[&str])] = &[
     ("page", &["report", "emit", "analysis", "plant", "cas", "source"]),
     // From a source to an answer, and front ends.
     ("derived", &["emit", "lab", "search", "analysis", "plant", "model", "cas", "source"]),
+    // A crate around the emitted code.
+    ("c_face", &["derived", "emit", "lab", "analysis", "plant", "cas"]),
     (
         "answer",
         &[
+            "c_face",
             "page",
             "derived",
             "emit",

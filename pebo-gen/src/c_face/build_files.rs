@@ -1,0 +1,29 @@
+//! The files that build the crate: Cargo's manifest, a Makefile, a list for CMake, and how to use them.
+
+use super::Face;
+
+const MANIFEST: &str = include_str!("templates/Cargo.toml.in");
+const MAKEFILE: &str = include_str!("templates/Makefile");
+const CMAKE: &str = include_str!("templates/CMakeLists.txt");
+const README: &str = include_str!("templates/README.md");
+
+/// `Cargo.toml`.
+pub(super) fn manifest(face: &Face<'_>) -> String {
+    face.filled(MANIFEST, &[("oldest", env!("CARGO_PKG_RUST_VERSION"))])
+}
+
+/// `Makefile`.
+pub(super) fn makefile(face: &Face<'_>) -> String {
+    face.filled(MAKEFILE, &[])
+}
+
+/// `CMakeLists.txt`.
+pub(super) fn cmake(face: &Face<'_>) -> String {
+    face.filled(CMAKE, &[])
+}
+
+/// `README.md`.
+pub(super) fn readme(face: &Face<'_>) -> String {
+    let title = face.plant.title.as_deref().unwrap_or(&face.plant.name);
+    face.filled(README, &[("title", title), ("oldest", env!("CARGO_PKG_RUST_VERSION"))])
+}
