@@ -18,15 +18,23 @@ fn main() -> Result<(), BuildError> {
     let mut root = String::new();
     let mut table =
         String::from("/// Model, scalar, evaluation.\npub const ALL: &[(&str, &str, crate::Evaluate)] = &[\n");
+    let mut sizes = String::from(
+        "/// Model, scalar, bytes of the observer with the model's settings.\npub const SIZES: &[(&str, &str, usize)] = &[\n",
+    );
     for (scalar, name) in [(Scalar::F64, "f64"), (Scalar::F32, "f32")] {
         for built in Builder::new().out_dir(out.join(name)).scalar(scalar).compile(&models)? {
             let (model, type_name) = (&built.model, &built.type_name);
             writeln!(root, "#[path = {:?}]\npub mod {model}_{name};", built.path.display().to_string())
                 .expect("a string");
+            let code = std::fs::read_to_string(&built.path).expect("what was written");
+            if code.contains("pub type Tuned") {
+                writeln!(sizes, "    ({model:?}, {name:?}, size_of::<{model}_{name}::Tuned>()),").expect("a string");
+            }
             writeln!(table, "    ({model:?}, {name:?}, evaluated!({model}_{name}::{type_name})),").expect("a string");
         }
     }
     table.push_str("];\n");
-    std::fs::write(out.join("emitted.rs"), root + &table).expect("OUT_DIR can be written to");
+    sizes.push_str("];\n");
+    std::fs::write(out.join("emitted.rs"), root + &table + &sizes).expect("OUT_DIR can be written to");
     Ok(())
 }

@@ -13,6 +13,9 @@ const HEAD: &str = include_str!("templates/face_head.rs.in");
 const TAIL: &str = include_str!("templates/face_tail.rs.in");
 const STANDARD_ERROR: &str = include_str!("templates/face_standard_error.rs.in");
 
+/// The longest list of fields that rustfmt leaves in one line.
+const SHORT: usize = 18;
+
 /// The text of `lib.rs`.
 pub(super) fn text(face: &Face<'_>) -> String {
     let module = &face.module;
@@ -42,12 +45,12 @@ pub(super) fn text(face: &Face<'_>) -> String {
             ("gate_field", or(module.has_gate, "    gate: Gate<@scalar@>,\n")),
             ("limits_set", &or(module.has_limits, "        let limits = emitted::@type@::limits()?;\n").replace("@type@", &module.type_name)),
             ("gate_set", &or(module.has_gate, "        let gate = emitted::@type@::gate()?;\n").replace("@type@", &module.type_name)),
-            ("limits_name", or(module.has_limits, ", limits")),
-            ("gate_name", or(module.has_gate, ", gate")),
+            ("limits_name", or(module.has_limits, "            limits,\n")),
+            ("gate_name", or(module.has_gate, "            gate,\n")),
             ("limits_check", or(module.has_limits, "        self.limits.check(&SVector::from(y), &SVector::from(u), period)?;\n")),
             ("gate_check", or(module.has_gate, "        let innovation = self.tuned.innovation(y, u, period)?;\n        self.gate.admit(&innovation)?;\n")),
             ("parameters_argument", or(!face.parameters.is_empty(), "parameters: &Parameters")),
-            ("parameters_value", &value(face, "Parameters", &face.parameters, "parameters")),
+            ("parameters_value", &value("emitted::Parameters", &face.parameters, "parameters")),
         ],
     );
     let structures = [
@@ -56,7 +59,6 @@ pub(super) fn text(face: &Face<'_>) -> String {
         structure(face, "X", "The states that an estimate holds.", &face.x),
         structure(face, "Parameters", "The constants of the plant.", &face.parameters),
     ];
-    let fields: String = face.x.iter().map(|signal| format!("{0}: x.{0}, ", signal.rust)).collect();
     let with_parameters = !face.parameters.is_empty();
     let with_inputs = !face.u.is_empty();
     let tail = face.filled(
@@ -67,16 +69,19 @@ pub(super) fn text(face: &Face<'_>) -> String {
             ("parameters_names", if with_parameters { "(room, parameters)" } else { "room" }),
             ("parameters_given", or(with_parameters, "&parameters?")),
             ("inputs", or(with_inputs, "    u: *const U,\n")),
-            ("inputs_read", or(with_inputs, "read(u), ")),
+            (
+                "inputs_read",
+                or(with_inputs, "    // SAFETY: the caller promises it.\n    let u = unsafe { read(u) };\n"),
+            ),
             ("inputs_names", or(with_inputs, "u, ")),
             ("inputs_given", or(with_inputs, "u?, ")),
-            ("y_value", &value(face, "Y", &face.y, "y")),
-            ("u_value", &value(face, "U", &face.u, "u")),
+            ("y_value", &value("emitted::Y", &face.y, "y")),
+            ("u_value", &value("emitted::U", &face.u, "u")),
             ("standard_error", if face.has_standard_error() { STANDARD_ERROR } else { "" }),
         ],
     );
     let text = format!("{head}{}{}{tail}", structures.concat(), faults());
-    face.filled(&text, &[("x_fields", fields.trim_end_matches([' ', ',']))])
+    face.filled(&text, &[("x_value", &value("Self", &face.x, "x"))])
 }
 
 impl Face<'_> {
@@ -106,13 +111,18 @@ fn structure(face: &Face<'_>, name: &str, what: &str, signals: &[Signal]) -> Str
     format!("/// {what}\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct {name} {{\n{fields}}}\n\n")
 }
 
-/// A value of the emitted module's structure from one of ours.
-fn value(_face: &Face<'_>, name: &str, signals: &[Signal], from: &str) -> String {
+/// A value of a structure from one with the same fields, two levels deep.
+fn value(name: &str, signals: &[Signal], from: &str) -> String {
     if signals.is_empty() {
-        return format!("emitted::{name}");
+        return name.to_owned();
     }
-    let fields: String = signals.iter().map(|signal| format!("            {0}: {from}.{0},\n", signal.rust)).collect();
-    format!("emitted::{name} {{\n{fields}        }}")
+    let fields: Vec<String> = signals.iter().map(|signal| format!("{0}: {from}.{0}", signal.rust)).collect();
+    let line = fields.join(", ");
+    if line.len() <= SHORT {
+        return format!("{name} {{ {line} }}");
+    }
+    let lines: String = fields.iter().map(|field| format!("            {field},\n")).collect();
+    format!("{name} {{\n{lines}        }}")
 }
 
 /// The enumeration of faults, and the runtime's as one of them.

@@ -1,0 +1,174 @@
+//! The crates, built as a C project builds them: make, gcc and g++ with all warnings as errors. What the examples print
+//! is what the Rust observers estimate.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use pebo_gen::CProject;
+use pebo_gen::emit::Scalar;
+
+use super::{file, project, workspace};
+
+/// C and C++ with all warnings.
+const LANGUAGES: [(&str, &str, &str); 2] = [("gcc", "c", "-std=c99"), ("g++", "c++", "-std=c++17")];
+const WARNINGS: [&str; 7] =
+    ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wdouble-promotion", "-Werror"];
+
+/// The folder for what is built, which later runs find again.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_face").join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// What a command prints; it has to succeed.
+fn run(command: &mut Command) -> String {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let output = command.stdin(Stdio::null()).output();
+    let output = output.unwrap_or_else(|error| panic!("{program}, which this test needs, does not run: {error}"));
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(output.status.success(), "{command:?}\n{}{}", text(&output.stdout), text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// Each header by itself and twice, all in one program, in both languages.
+pub(crate) fn check_headers(headers: &[&(String, String)]) {
+    let folder = folder("headers");
+    let mut all = String::new();
+    for (path, text) in headers {
+        let name = path.trim_start_matches("include/");
+        std::fs::write(folder.join(name), text).expect("a file");
+        writeln!(all, "#include \"{name}\"\n#include \"{name}\"").expect("a string");
+    }
+    std::fs::write(folder.join("all.c"), all).expect("a file");
+    for (compiler, language, standard) in LANGUAGES {
+        let mut command = Command::new(compiler);
+        command.args(["-x", language, standard, "-fsyntax-only"]).args(WARNINGS).arg("all.c").current_dir(&folder);
+        run(&mut command);
+    }
+}
+
+/// A crate that was built: its folder, with the library and the example.
+struct Built {
+    folder: PathBuf,
+    name: &'static str,
+}
+
+impl Built {
+    fn of(name: &'static str, project: &CProject) -> Self {
+        let folder = folder(name);
+        for (path, text) in &project.files {
+            let path = folder.join(path);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+            // What has not changed is not built again.
+            if std::fs::read_to_string(&path).ok().as_ref() != Some(text) {
+                std::fs::write(path, text).expect("a file");
+            }
+        }
+        // The versions of the workspace, which are on this machine.
+        std::fs::copy(workspace("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock file");
+        let mut make = Command::new("make");
+        make.args(["example", "BUILD=../build", concat!("CARGO=", env!("CARGO"))]).current_dir(&folder);
+        make.arg(format!("PEBO_RUNTIME={}", workspace("pebo-runtime").display()));
+        run(make.env("CARGO_NET_OFFLINE", "true").env_remove("CARGO_TARGET_DIR").env_remove("RUSTFLAGS"));
+        Self { folder, name }
+    }
+
+    fn library(&self) -> PathBuf {
+        self.folder.join(format!("../build/host/lib{}_observer.a", self.name))
+    }
+
+    /// Compiles a C program with the library, in a language, and runs it.
+    fn program(&self, text: &str, (compiler, language, standard): (&str, &str, &str)) -> String {
+        let source = self.folder.join("program.c");
+        std::fs::write(&source, text).expect("a file");
+        let program = self.folder.join("program");
+        let mut command = Command::new(compiler);
+        command.args(["-x", language, standard]).args(WARNINGS).arg("-I").arg(self.folder.join("include"));
+        command.arg(&source).args(["-x", "none"]).arg(self.library()).args(["-lpthread", "-ldl", "-lm", "-o"]);
+        run(command.arg(&program));
+        run(&mut Command::new(&program))
+    }
+
+    /// What the example prints, as make built it, and as either language does.
+    fn example(&self, project: &CProject) -> Vec<Vec<f64>> {
+        let made = run(&mut Command::new(self.folder.join(format!("../build/host/{}_example", self.name))));
+        for language in LANGUAGES {
+            assert_eq!(self.program(file(project, "example/main.c"), language), made, "{language:?}");
+        }
+        made.lines().map(estimates).collect()
+    }
+}
+
+/// The numbers in hexadecimal digits of a line.
+fn estimates(line: &str) -> Vec<f64> {
+    assert!(!line.contains("fault"), "{line}");
+    line.split('(').skip(1).map(|part| hexadecimal(part.split(')').next().expect("a number"))).collect()
+}
+
+/// The number that `%a` printed.
+fn hexadecimal(text: &str) -> f64 {
+    let (sign, text) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
+    let (mantissa, exponent) = text.strip_prefix("0x").and_then(|text| text.split_once('p')).expect("as C prints it");
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits = u64::from_str_radix(&format!("{whole}{fraction}"), 16).expect("digits");
+    let places = i32::try_from(4 * fraction.len()).expect("a few");
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    #[expect(clippy::cast_precision_loss, reason = "a number of 53 bits")]
+    let digits = digits as f64;
+    sign * digits * 2_f64.powi(exponent - places)
+}
+
+/// The samples of an example: each line of the table as its numbers.
+fn samples(project: &CProject) -> Vec<Vec<f64>> {
+    let text = file(project, "example/main.c");
+    let table = text.split("samples[] = {\n").nth(1).and_then(|rest| rest.split("\n};").next()).expect("a table");
+    let number = |text: &str| text.trim_end_matches('f').parse().unwrap_or_else(|_| panic!("{text} is no number"));
+    let row = |line: &str| line.split([' ', '{', '}', ',']).filter(|part| !part.is_empty()).map(number).collect();
+    table.lines().map(row).collect()
+}
+
+macro_rules! same_as_in_rust {
+    ($($test:ident: $module:ident::$model:ident, $name:literal, $file:literal, $settings:expr, $scalar:ident;)+) => {$(
+        #[test]
+        fn $test() {
+            use pebo_runtime::Real;
+            use pebo_runtime::nalgebra::SVector;
+            use tests::emitted::$module::{$model, NU, NX, NY, Parameters};
+            let project = project($file, $settings, Scalar::$scalar);
+            let printed = Built::of($name, &project).example(&project);
+            let samples = samples(&project);
+            assert_eq!((samples.len(), printed.len()), (40, 40));
+            let mut observer = $model::observer(&Parameters::default()).expect("the settings of the model");
+            for (sample, printed) in samples.iter().zip(&printed) {
+                assert_eq!((sample.len(), printed.len()), (1 + NY + NU, NX));
+                let y = SVector::<_, NY>::from_fn(|i, _| Real::from_f64(sample[1 + i]));
+                let u = SVector::<_, NU>::from_fn(|i, _| Real::from_f64(sample[1 + NY + i]));
+                let x = SVector::from(observer.step(y, u, Real::from_f64(sample[0])).expect("a good sample"));
+                let exact = x.iter().zip(printed).all(|(x, printed)| Real::to_f64(*x).to_bits() == printed.to_bits());
+                assert!(exact, "{x:?} {printed:?}");
+            }
+            // The samples are not all alike.
+            assert_ne!(printed[0], printed[39]);
+        }
+    )+};
+}
+
+same_as_in_rust! {
+    plain_with_parameters: cuk_f64::Cuk, "cuk", "models/cuk.yaml", &[], F64;
+    generalised_by_least_squares: dc_motor_f64::DcMotor, "dc_motor", "models/dc_motor.yaml", &[], F64;
+    known_numbers_with_a_gate_and_limits: cart_f32::Cart, "cart", "tests/models/cart.yaml",
+        &["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"], F32;
+}
+
+/// What a C program gets that makes mistakes: the fault, and an observer as before.
+#[test]
+fn mistakes_of_a_program_are_faults() {
+    let settings = ["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"];
+    let project = project("tests/models/cart.yaml", &settings, Scalar::F64);
+    let built = Built::of("cart", &project);
+    for language in LANGUAGES {
+        assert_eq!(built.program(include_str!("mistakes.c"), language), "as expected\n", "{language:?}");
+    }
+}
