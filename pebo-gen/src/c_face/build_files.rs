@@ -1,4 +1,4 @@
-//! The files that build the crate: Cargo's manifest, a Makefile, a list for CMake, and how to use them.
+//! The files that build the crate: Cargo's manifest, one file for make, one for `CMake`, and how to use them.
 
 use super::Face;
 

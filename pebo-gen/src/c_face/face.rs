@@ -3,54 +3,67 @@
 //! In: the face. Out: Rust in rustfmt's layout, for `std` on hosts and without it where there is no system. A function
 //! looks at its pointers and at the tag of the observer, and hands over to the emitted code.
 
-use std::fmt::Write as _;
-
 use super::faults::FAULTS;
 use super::size::{mentions, start_name};
 use super::{Face, Signal};
 
 const HEAD: &str = include_str!("templates/face_head.rs.in");
+const FAULT: &str = include_str!("templates/face_fault.rs.in");
 const TAIL: &str = include_str!("templates/face_tail.rs.in");
 const STANDARD_ERROR: &str = include_str!("templates/face_standard_error.rs.in");
 
 /// The longest list of fields that rustfmt leaves in one line.
 const SHORT: usize = 18;
 
+/// What an observer with limits has besides, what `new` does for them, and `step`.
+const LIMITS: [&str; 3] = [
+    "    limits: Limits<@scalar@, { emitted::NY }, { emitted::NU }>,\n",
+    "        let limits = emitted::@type@::limits()?;\n",
+    // A number that is not finite is in no range, and the observer refuses it by itself.
+    "        let (outputs, inputs) = (SVector::from(y), SVector::from(u));\n        \
+     if outputs.iter().chain(inputs.iter()).all(|value| value.is_finite()) {\n            \
+     match self.limits.check(&outputs, &inputs, period) {\n                \
+     // Before the first sample no interval is too long.\n                \
+     Err(pebo_runtime::Fault::Gap) if self.tuned.estimate().is_none() => {}\n                \
+     checked => checked?,\n            }\n        }\n",
+];
+
+/// The same of a gate.
+const GATE: [&str; 3] = [
+    "    gate: Gate<@scalar@>,\n",
+    "        let gate = emitted::@type@::gate()?;\n",
+    "        let innovation = self.tuned.innovation(y, u, period)?;\n        self.gate.admit(&innovation)?;\n",
+];
+
 /// The text of `lib.rs`.
 pub(super) fn text(face: &Face<'_>) -> String {
     let module = &face.module;
-    let is_late = mentions(&module.tuned, "LateObserver");
     let tag = grouped(module.tag);
-    let observer = if is_late { "tuned.past()" } else { "tuned" };
-    let or = |wanted: bool, text: &'static str| if wanted { text } else { "" };
-    let guards = [or(module.has_gate, "Gate"), or(module.has_limits, "Limits")];
-    let mut imports = vec!["Extension as _"];
-    imports.extend(guards.into_iter().filter(|name| !name.is_empty()));
-    let imports = if imports.len() == 1 { imports.concat() } else { format!("{{{}}}", imports.join(", ")) };
+    let started = if face.is_late() { "tuned.past()" } else { "tuned" };
+    let (with_limits, with_gate) = (module.has_limits, module.has_gate);
+    let guards = |place: usize| or(with_limits, LIMITS[place]).to_owned() + or(with_gate, GATE[place]);
+    let [fields, set, checks] = [0, 1, 2].map(guards);
+    let imports = match (with_gate, with_limits) {
+        (false, false) => "Extension as _",
+        (false, true) => "{Extension as _, Limits}",
+        (true, false) => "{Extension as _, Gate}",
+        (true, true) => "{Extension as _, Gate, Limits}",
+    };
     let head = face.filled(
         HEAD,
         &[
-            ("type", &module.type_name),
+            ("imports", imports),
+            ("guard_fields", &fields),
+            ("guards_set", &set),
+            ("limits_name", or(with_limits, "            limits,\n")),
+            ("gate_name", or(with_gate, "            gate,\n")),
+            ("guard_checks", &checks),
             ("tag", &tag),
             ("start", start_name(module)),
-            ("started", observer),
-            ("imports", &imports),
-            (
-                "limits_field",
-                or(
-                    module.has_limits,
-                    "    limits: Limits<@scalar@, { emitted::NY }, { emitted::NU }>,\n",
-                ),
-            ),
-            ("gate_field", or(module.has_gate, "    gate: Gate<@scalar@>,\n")),
-            ("limits_set", &or(module.has_limits, "        let limits = emitted::@type@::limits()?;\n").replace("@type@", &module.type_name)),
-            ("gate_set", &or(module.has_gate, "        let gate = emitted::@type@::gate()?;\n").replace("@type@", &module.type_name)),
-            ("limits_name", or(module.has_limits, "            limits,\n")),
-            ("gate_name", or(module.has_gate, "            gate,\n")),
-            ("limits_check", or(module.has_limits, "        self.limits.check(&SVector::from(y), &SVector::from(u), period)?;\n")),
-            ("gate_check", or(module.has_gate, "        let innovation = self.tuned.innovation(y, u, period)?;\n        self.gate.admit(&innovation)?;\n")),
+            ("started", started),
             ("parameters_argument", or(!face.parameters.is_empty(), "parameters: &Parameters")),
             ("parameters_value", &value("emitted::Parameters", &face.parameters, "parameters")),
+            ("type", &module.type_name),
         ],
     );
     let structures = [
@@ -84,11 +97,21 @@ pub(super) fn text(face: &Face<'_>) -> String {
     face.filled(&text, &[("x_value", &value("Self", &face.x, "x"))])
 }
 
+/// The text where it is wanted.
+fn or(wanted: bool, text: &'static str) -> &'static str {
+    if wanted { text } else { "" }
+}
+
 impl Face<'_> {
     /// Tests whether the estimator has a covariance.
     pub(super) fn has_standard_error(&self) -> bool {
         let has = |name| mentions(&self.module.tuned, name);
         (has("LeastSquares") || has("AdaptiveLeastSquares")) && !has("Drem") && !has("FiniteTime")
+    }
+
+    /// Tests whether outputs arrive late.
+    pub(super) fn is_late(&self) -> bool {
+        mentions(&self.module.tuned, "LateObserver")
     }
 
     /// Tests whether the covariance is that of sensors.
@@ -121,29 +144,21 @@ fn value(name: &str, signals: &[Signal], from: &str) -> String {
     if line.len() <= SHORT {
         return format!("{name} {{ {line} }}");
     }
-    let lines: String = fields.iter().map(|field| format!("            {field},\n")).collect();
+    let lines = fields.iter().map(|field| format!("            {field},\n")).collect::<Vec<_>>().concat();
     format!("{name} {{\n{lines}        }}")
 }
 
 /// The enumeration of faults, and the runtime's as one of them.
 fn faults() -> String {
-    let mut text = String::from(
-        "/// What a function returns.\n#[repr(C)]\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Fault {\n    \
-         /// No fault.\n    Ok = 0,\n",
-    );
-    for (place, fault) in FAULTS.iter().enumerate() {
-        let number = place + 1;
-        writeln!(text, "    /// It says: {}.\n    {} = {number},", fault.meaning.replace('\n', " "), fault.rust)
-            .expect("a string");
-    }
-    text.push_str("}\n\nimpl From<pebo_runtime::Fault> for Fault {\n    fn from(fault: pebo_runtime::Fault) -> Self {\n        match fault {\n");
-    for fault in FAULTS {
-        if let Some(pattern) = fault.of {
-            writeln!(text, "            pebo_runtime::Fault::{pattern} => Self::{},", fault.rust).expect("a string");
-        }
-    }
-    text.push_str("            _ => Self::Other,\n        }\n    }\n}\n\n");
-    text
+    let numbered = FAULTS
+        .iter()
+        .zip(1..)
+        .map(|(fault, number)| format!("    /// It says: {}.\n    {} = {number},\n", fault.meaning, fault.rust));
+    let arms = FAULTS
+        .iter()
+        .filter_map(|fault| Some(format!("            pebo_runtime::Fault::{} => Self::{},\n", fault.of?, fault.rust)));
+    let (numbered, arms) = (numbered.collect::<Vec<_>>().concat(), arms.collect::<Vec<_>>().concat());
+    FAULT.replace("@numbered@", &numbered).replace("@arms@", &arms)
 }
 
 /// A number in hexadecimal digits, in groups of four.

@@ -3,8 +3,6 @@
 //! In: the face. Out: C99 that C++17 takes too: the plant, the timing of a call, structures in the author's names with
 //! their units, faults, and functions with what each does.
 
-use std::fmt::Write as _;
-
 use super::faults::FAULTS;
 use super::{Face, Signal};
 
@@ -103,21 +101,17 @@ fn structure(face: &Face<'_>, name: &str, what: &str, signals: &[Signal]) -> Str
     if signals.is_empty() {
         return String::new();
     }
-    let mut text = format!("/* {what} */\ntypedef struct {{\n");
-    for (place, signal) in signals.iter().enumerate() {
+    let fields = signals.iter().enumerate().map(|(place, signal)| {
         let mut notes: Vec<String> = Vec::new();
         notes.extend((signal.c != signal.written).then(|| format!("`{}` of the model", signal.written)));
         notes.extend(signal.unit.as_ref().map(|unit| format!("in {unit}")));
-        if name == "parameters"
-            && let Some(value) = &face.plant.parameters[place].text
-        {
-            notes.push(format!("{value} in the model"));
-        }
+        let value = face.plant.parameters.get(place).filter(|_| name == "parameters");
+        notes.extend(value.and_then(|value| Some(format!("{} in the model", value.text.as_ref()?))));
         let note = if notes.is_empty() { String::new() } else { format!(" /* {} */", safe(&notes.join("; "))) };
-        text.push_str(&format!("    {} {};{note}\n", face.c_scalar(), signal.c));
-    }
-    text.push_str(&format!("}} {}_{name};\n", face.prefix));
-    text
+        format!("    {} {};{note}\n", face.c_scalar(), signal.c)
+    });
+    let fields = fields.collect::<Vec<_>>().concat();
+    format!("/* {what} */\ntypedef struct {{\n{fields}}} {}_{name};\n", face.prefix)
 }
 
 /// The values of the model as an initialiser, if each parameter has one.
@@ -153,19 +147,20 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 /// The enumeration of faults.
 fn faults(face: &Face<'_>) -> String {
     let upper = face.prefix.to_uppercase();
-    let mut text = String::from(
-        "/* What a function returns. After a fault the observer is as it was before the call, to the last bit. */\n\
-         typedef enum {\n",
-    );
-    text.push_str(&format!("    {upper}_OK = 0,\n"));
-    for (place, fault) in FAULTS.iter().enumerate() {
-        let comma = if place + 1 == FAULTS.len() { "" } else { "," };
-        let number = place + 1;
-        writeln!(text, "    /* {} */\n    {upper}_FAULT_{} = {number}{comma}", fault.meaning, fault.c)
-            .expect("a string");
-    }
-    text.push_str(&format!("}} {}_fault;\n", face.prefix));
-    text
+    let numbered = FAULTS.iter().zip(1..).map(|(fault, number)| {
+        let comma = if number == FAULTS.len() { "" } else { "," };
+        format!("    /* {} */\n    {upper}_FAULT_{} = {number}{comma}\n", fault.meaning, fault.c)
+    });
+    let numbered = numbered.collect::<Vec<_>>().concat();
+    let kept = match (face.is_late(), face.module.has_gate) {
+        (true, _) => "After OUTPUT, INPUT and STEP the observer is as it was before the call",
+        (false, true) => "After a fault the observer is as it was before the call, but for the count of outliers",
+        (false, false) => "After a fault the observer is as it was before the call, to the last bit",
+    };
+    format!(
+        "/* What a function returns. {kept}. */\ntypedef enum {{\n    {upper}_OK = 0,\n{numbered}}} {}_fault;\n",
+        face.prefix
+    )
 }
 
 /// The function for the standard error.

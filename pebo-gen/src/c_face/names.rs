@@ -248,7 +248,7 @@ fn ascii(name: &str) -> String {
     for letter in name.trim_start_matches('_').chars() {
         match letter {
             _ if letter.is_ascii_alphanumeric() || letter == '_' => found.push(letter),
-            _ if letter.is_alphanumeric() => found.push_str(&format!("x{:x}", u32::from(letter))),
+            _ if letter.is_alphanumeric() => found.extend(format!("x{:x}", u32::from(letter)).chars()),
             _ => found.push('_'),
         }
     }

@@ -20,10 +20,10 @@ pub(super) fn words(module: &Module, scalar: Scalar) -> Option<usize> {
     let observer = layouts.of(&module.tuned)?;
     let size = |name: &str| module.sizes.get(name).copied();
     let limits = module.has_limits.then(|| Some(layouts.limits(size("NY")?, size("NU")?)));
-    let gate = module.has_gate.then(|| layouts.structure(&[layouts.scalars(1), Layout::COUNTER, Layout::COUNTER]));
+    let gate = module.has_gate.then(|| Layout::of(&[layouts.scalars(1), Layout::COUNTER, Layout::COUNTER]));
     let place = [Some(Layout::WORD), Some(observer), Some(layouts.scalars(start(module)?))];
     let parts: Option<Vec<Layout>> = place.into_iter().chain(limits).chain(gate.map(Some)).collect();
-    Some(layouts.structure(&parts?).size.div_ceil(Layout::WORD.size))
+    Some(Layout::of(&parts?).size.div_ceil(Layout::WORD.size))
 }
 
 /// The number of components of the extension.
@@ -51,6 +51,13 @@ impl Layout {
     /// A flag.
     const FLAG: Self = Self { size: 1, align: 1 };
 
+    /// A structure of fields, or of numbers.
+    fn of(fields: &[Self]) -> Self {
+        let align = fields.iter().map(|field| field.align).max().unwrap_or(1);
+        let size: usize = fields.iter().map(|field| field.size).sum();
+        Self { size: size.next_multiple_of(align), align }
+    }
+
     fn times(self, count: usize) -> Self {
         Self { size: self.size * count, ..self }
     }
@@ -71,12 +78,6 @@ struct Layouts<'a> {
 impl Layouts<'_> {
     fn scalars(&self, count: usize) -> Layout {
         Layout { size: self.scalar * count, align: self.scalar }
-    }
-
-    fn structure(&self, fields: &[Layout]) -> Layout {
-        let align = fields.iter().map(|field| field.align).max().unwrap_or(1);
-        let size: usize = fields.iter().map(|field| field.size).sum();
-        Layout { size: size.next_multiple_of(align), align }
     }
 
     /// The layout of a type.
@@ -123,7 +124,7 @@ impl Layouts<'_> {
         } else {
             (self.of(&module.extension)?, self.scalars(module.terms))
         };
-        let state = self.structure(&[
+        let state = Layout::of(&[
             self.scalars(ny).optional(),
             self.scalars(nu).optional(),
             extension,
@@ -132,14 +133,14 @@ impl Layouts<'_> {
             Layout::COUNTER,
         ]);
         // The number of samples, or the form without drift with its number.
-        let trigger = self.structure(&[self.scalars(1).optional(), Layout::COUNTER]);
-        Some(self.structure(&[
+        let trigger = Layout::of(&[self.scalars(1).optional(), Layout::COUNTER]);
+        Some(Layout::of(&[
             model,
             state,
             terms.optional(),
-            self.structure(&[trigger, Layout::WORD]).optional(),
-            self.structure(&[self.scalars(ny), Layout::WORD]).optional(),
-            self.structure(&[Layout::WORD.optional().times(nr), Layout::WORD]).optional(),
+            Layout::of(&[trigger, Layout::WORD]).optional(),
+            Layout::of(&[self.scalars(ny), Layout::WORD]).optional(),
+            Layout::of(&[Layout::WORD.optional().times(nr), Layout::WORD]).optional(),
             Layout::FLAG,
         ]))
     }
@@ -148,10 +149,10 @@ impl Layouts<'_> {
         let observer = self.observer(arguments)?;
         let (ny, nu, nr) = (self.count(arguments, 3)?, self.count(arguments, 4)?, self.count(arguments, 6)?);
         let flags = Layout::FLAG.times(ny);
-        let instant = self.structure(&[self.scalars(1 + nu + ny), flags]);
+        let instant = Layout::of(&[self.scalars(1 + nu + ny), flags]);
         let arrivals = [instant.times(self.count(arguments, 9)?), Layout::WORD.times(2), self.scalars(2 * ny)];
         let late = [self.scalars(ny), Layout::WORD.times(nr), flags];
-        Some(self.structure(&[observer, observer.optional(), self.structure(&arrivals), self.structure(&late)]))
+        Some(Layout::of(&[observer, observer.optional(), Layout::of(&arrivals), Layout::of(&late)]))
     }
 
     /// A model: the module's own, or one of the runtime's around it.
@@ -160,10 +161,10 @@ impl Layouts<'_> {
             _ if name == self.module.type_name => self.scalars(self.module.constants),
             "OutputForm" => {
                 let rows = self.count(arguments, 2)?;
-                let expected = self.structure(&[Layout::WORD.times(rows), self.scalars(rows)]);
-                self.structure(&[self.of(arguments.first()?)?, expected.optional()])
+                let expected = Layout::of(&[Layout::WORD.times(rows), self.scalars(rows)]);
+                Layout::of(&[self.of(arguments.first()?)?, expected.optional()])
             }
-            "Within" => self.structure(&[self.of(arguments.first()?)?, self.scalars(2 * self.count(arguments, 2)?)]),
+            "Within" => Layout::of(&[self.of(arguments.first()?)?, self.scalars(2 * self.count(arguments, 2)?)]),
             _ => return None,
         })
     }
@@ -176,30 +177,30 @@ impl Layouts<'_> {
             "Integrator" => self.scalars(2 * count(1)?),
             "Fundamental" => self.fundamental(count(1)?),
             "Gradient" => self.gradient(count(1)?),
-            "NormalisedGradient" => self.structure(&[self.gradient(count(1)?), self.scalars(1)]),
+            "NormalisedGradient" => Layout::of(&[self.gradient(count(1)?), self.scalars(1)]),
             "LeastSquares" => self.least_squares(count(1)?),
             "AdaptiveLeastSquares" => {
                 let (nr, ne) = (count(1)?, count(2)?);
-                self.structure(&[self.least_squares(ne), self.scalars(ne + 2 + 3 * nr)])
+                Layout::of(&[self.least_squares(ne), self.scalars(ne + 2 + 3 * nr)])
             }
             "Bounded" => {
                 let ne = count(2)?;
-                self.structure(&[inner()?, self.scalars(4 * ne), self.scalars(ne * ne).optional()])
+                Layout::of(&[inner()?, self.scalars(4 * ne), self.scalars(ne * ne).optional()])
             }
-            "Drem" => self.structure(&[inner()?, self.scalars(3 * count(2)?)]),
+            "Drem" => Layout::of(&[inner()?, self.scalars(3 * count(2)?)]),
             "Kreisselmeier" => {
                 let ne = count(1)?;
                 self.scalars(3 * ne + DECAY + 2 * ne * ne)
             }
             "Response" => {
                 let ne = count(3)?;
-                self.structure(&[self.scalars(2 * ne), inner()?.times(ne + 2)])
+                Layout::of(&[self.scalars(2 * ne), inner()?.times(ne + 2)])
             }
             "FiniteTime" => {
                 let ne = count(2)?;
                 let reference = self.scalars(ne + 2 * ne * ne + 2);
-                let drem = self.structure(&[inner()?, self.scalars(3 * ne)]);
-                self.structure(&[drem, self.scalars(1), self.scalars(1).optional(), reference.times(2)])
+                let drem = Layout::of(&[inner()?, self.scalars(3 * ne)]);
+                Layout::of(&[drem, self.scalars(1), self.scalars(1).optional(), reference.times(2)])
             }
             "SampledRegression" => {
                 let (nr, ne) = (count(1)?, count(2)?);
@@ -208,7 +209,7 @@ impl Layouts<'_> {
             "WindowedRegression" => {
                 let (nr, ne, samples) = (count(1)?, count(2)?, count(3)?);
                 let sides = self.scalars((nr + nr * ne + 1) * (samples + 4));
-                self.structure(&[Layout::FLAG, sides, Layout::WORD])
+                Layout::of(&[Layout::FLAG, sides, Layout::WORD])
             }
             _ => return None,
         })
@@ -220,7 +221,7 @@ impl Layouts<'_> {
 
     fn gradient(&self, ne: usize) -> Layout {
         let information = self.scalars(information(ne));
-        self.structure(&[information, information.optional(), self.scalars(2 * ne)])
+        Layout::of(&[information, information.optional(), self.scalars(2 * ne)])
     }
 
     fn least_squares(&self, ne: usize) -> Layout {
@@ -229,12 +230,12 @@ impl Layouts<'_> {
 
     /// The regression behind a filter: bandwidth, weights and outputs, each a sum with its carry.
     fn filtered(&self, nr: usize, ne: usize) -> Layout {
-        let filter = self.structure(&[self.scalars(4), Layout::FLAG]);
-        self.structure(&[filter, self.scalars(2 * (nr + nr * ne))])
+        let filter = Layout::of(&[self.scalars(4), Layout::FLAG]);
+        Layout::of(&[filter, self.scalars(2 * (nr + nr * ne))])
     }
 
     fn limits(&self, ny: usize, nu: usize) -> Layout {
-        self.structure(&[self.scalars(2 * (ny + nu)), self.scalars(1).optional()])
+        Layout::of(&[self.scalars(2 * (ny + nu)), self.scalars(1).optional()])
     }
 }
 

@@ -156,7 +156,7 @@ pub(super) struct GenerateOptions {
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Write a crate to this folder instead, which builds the observer of one model as a static library with a C header,
-    /// with a Makefile, a list for CMake and an example
+    /// with files for make and `CMake`, and an example
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     pub(super) c: Option<PathBuf>,
     /// The floating-point type of the emitted code

@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use pebo_gen::CProject;
 use pebo_gen::emit::Scalar;
@@ -81,6 +82,9 @@ impl Built {
 
     /// Compiles a C program with the library, in a language, and runs it.
     fn program(&self, text: &str, (compiler, language, standard): (&str, &str, &str)) -> String {
+        // Programs of one crate share a place.
+        static ONE: Mutex<()> = Mutex::new(());
+        let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let source = self.folder.join("program.c");
         std::fs::write(&source, text).expect("a file");
         let program = self.folder.join("program");
@@ -115,9 +119,9 @@ fn hexadecimal(text: &str) -> f64 {
     let digits = u64::from_str_radix(&format!("{whole}{fraction}"), 16).expect("digits");
     let places = i32::try_from(4 * fraction.len()).expect("a few");
     let exponent: i32 = exponent.parse().expect("an exponent");
-    #[expect(clippy::cast_precision_loss, reason = "a number of 53 bits")]
-    let digits = digits as f64;
-    sign * digits * 2_f64.powi(exponent - places)
+    // Exact, as it has 53 bits.
+    let halves = [digits >> 32, digits & 0xffff_ffff].map(|half| f64::from(u32::try_from(half).expect("32 bits")));
+    sign * (halves[0] * 2_f64.powi(32) + halves[1]) * 2_f64.powi(exponent - places)
 }
 
 /// The samples of an example: each line of the table as its numbers.
@@ -129,16 +133,32 @@ fn samples(project: &CProject) -> Vec<Vec<f64>> {
     table.lines().map(row).collect()
 }
 
+/// The cart with a gate and limits, which two tests share.
+fn guarded_cart() -> &'static (CProject, Built) {
+    static CART: OnceLock<(CProject, Built)> = OnceLock::new();
+    CART.get_or_init(|| {
+        let settings = ["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"];
+        let project = project("tests/models/cart.yaml", &settings, Scalar::F32);
+        let built = Built::of("cart", &project);
+        (project, built)
+    })
+}
+
+fn shipped(name: &'static str) -> (CProject, Built) {
+    let project = project(&format!("models/{name}.yaml"), &[], Scalar::F64);
+    let built = Built::of(name, &project);
+    (project, built)
+}
+
 macro_rules! same_as_in_rust {
-    ($($test:ident: $module:ident::$model:ident, $name:literal, $file:literal, $settings:expr, $scalar:ident;)+) => {$(
+    ($($test:ident: $module:ident::$model:ident, $made:expr;)+) => {$(
         #[test]
         fn $test() {
             use pebo_runtime::Real;
             use pebo_runtime::nalgebra::SVector;
             use tests::emitted::$module::{$model, NU, NX, NY, Parameters};
-            let project = project($file, $settings, Scalar::$scalar);
-            let printed = Built::of($name, &project).example(&project);
-            let samples = samples(&project);
+            let (project, built) = $made;
+            let (printed, samples) = (built.example(&project), samples(&project));
             assert_eq!((samples.len(), printed.len()), (40, 40));
             let mut observer = $model::observer(&Parameters::default()).expect("the settings of the model");
             for (sample, printed) in samples.iter().zip(&printed) {
@@ -156,18 +176,15 @@ macro_rules! same_as_in_rust {
 }
 
 same_as_in_rust! {
-    plain_with_parameters: cuk_f64::Cuk, "cuk", "models/cuk.yaml", &[], F64;
-    generalised_by_least_squares: dc_motor_f64::DcMotor, "dc_motor", "models/dc_motor.yaml", &[], F64;
-    known_numbers_with_a_gate_and_limits: cart_f32::Cart, "cart", "tests/models/cart.yaml",
-        &["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"], F32;
+    plain_with_parameters: cuk_f64::Cuk, shipped("cuk");
+    generalised_by_least_squares: dc_motor_f64::DcMotor, shipped("dc_motor");
+    known_numbers_with_a_gate_and_limits: cart_f32::Cart, guarded_cart();
 }
 
 /// What a C program gets that makes mistakes: the fault, and an observer as before.
 #[test]
 fn mistakes_of_a_program_are_faults() {
-    let settings = ["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"];
-    let project = project("tests/models/cart.yaml", &settings, Scalar::F64);
-    let built = Built::of("cart", &project);
+    let (_, built) = guarded_cart();
     for language in LANGUAGES {
         assert_eq!(built.program(include_str!("mistakes.c"), language), "as expected\n", "{language:?}");
     }
