@@ -17,11 +17,12 @@ const SHORT: usize = 18;
 
 /// What an observer with limits has besides, what `new` does for them, and `step`.
 const LIMITS: [&str; 3] = [
-    "    limits: Limits<@scalar@, { emitted::NY }, { emitted::NU }>,\n",
+    "    limits: pebo_runtime::Limits<@scalar@, { emitted::NY }, { emitted::NU }>,\n",
     "        let limits = emitted::@type@::limits()?;\n",
     // A number that is not finite is in no range, and the observer refuses it by itself.
     "        let (outputs, inputs) = (SVector::from(y), SVector::from(u));\n        \
-     if outputs.iter().chain(inputs.iter()).all(|value| value.is_finite()) {\n            \
+     let finite = |values: &[@scalar@]| values.iter().all(|value| value.is_finite());\n        \
+     if finite(outputs.as_slice()) && finite(inputs.as_slice()) {\n            \
      match self.limits.check(&outputs, &inputs, period) {\n                \
      // Before the first sample no interval is too long.\n                \
      Err(pebo_runtime::Fault::Gap) if self.tuned.estimate().is_none() => {}\n                \
@@ -30,7 +31,7 @@ const LIMITS: [&str; 3] = [
 
 /// The same of a gate.
 const GATE: [&str; 3] = [
-    "    gate: Gate<@scalar@>,\n",
+    "    gate: pebo_runtime::Gate<@scalar@>,\n",
     "        let gate = emitted::@type@::gate()?;\n",
     "        let innovation = self.tuned.innovation(y, u, period)?;\n        self.gate.admit(&innovation)?;\n",
 ];
@@ -43,16 +44,9 @@ pub(super) fn text(face: &Face<'_>) -> String {
     let (with_limits, with_gate) = (module.has_limits, module.has_gate);
     let guards = |place: usize| or(with_limits, LIMITS[place]).to_owned() + or(with_gate, GATE[place]);
     let [fields, set, checks] = [0, 1, 2].map(guards);
-    let imports = match (with_gate, with_limits) {
-        (false, false) => "Extension as _",
-        (false, true) => "{Extension as _, Limits}",
-        (true, false) => "{Extension as _, Gate}",
-        (true, true) => "{Extension as _, Gate, Limits}",
-    };
     let head = face.filled(
         HEAD,
         &[
-            ("imports", imports),
             ("guard_fields", &fields),
             ("guards_set", &set),
             ("limits_name", or(with_limits, "            limits,\n")),
