@@ -2,6 +2,7 @@
 
 use super::samples::Origin;
 use super::{Face, Signal};
+use crate::emit::Scalar;
 
 const EXAMPLE: &str = include_str!("templates/main.c");
 
@@ -32,10 +33,13 @@ pub(super) fn text(face: &Face<'_>) -> String {
         Origin::Run => "the closed loop that the model describes, without noise",
         Origin::Domain => "a place of the model's domain, again and again",
     };
+    // So many tell all numbers apart.
+    let digits = if face.scalar == Scalar::F32 { "9" } else { "17" };
     face.filled(
         EXAMPLE,
         &[
             ("origin", origin),
+            ("digits", digits),
             ("rows", &rows),
             ("parameters_value", &parameters),
             ("parameters", or(has_parameters, ", &parameters")),

@@ -134,6 +134,16 @@ impl Run {
         }
     }
 
+    /// A part of a C program or of a header that a command of the page wrote.
+    fn c(&mut self, block: &Block) {
+        let text = self.page.of(block).to_owned();
+        let own = [self.folder.path().to_owned()];
+        let parts = ["c", "h"].into_iter().flat_map(|extension| self.sources(extension, &own));
+        if !parts.into_iter().any(|source| source.contains(&text)) {
+            self.complain(block, "no C file that was written here has this part");
+        }
+    }
+
     /// A part of a recording that is shipped.
     fn recording(&mut self, block: &Block) {
         let text = self.page.of(block).to_owned();
@@ -173,6 +183,7 @@ impl Run {
                 "console" => self.console(&block),
                 "sh" => self.elsewhere(&block),
                 "rust" => self.rust(&block),
+                "c" => self.c(&block),
                 "csv" => self.recording(&block),
                 "toml" => self.dependencies(&block),
                 "text" => self.file(&block),

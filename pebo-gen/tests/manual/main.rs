@@ -13,6 +13,7 @@
 //! | `sh` | commands that build or install | CI runs them, or `commands::BY_HAND` has them |
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
+//! | `c` | a part of a C program or of a header | a command of the page wrote a file that has it |
 //! | `csv` | a part of a recording | a recording below models/ has it |
 //! | `text` | a diagram or formulas | nothing |
 //! | `text PATH` | a file of the project | it is that file |

@@ -1,6 +1,7 @@
 /*
- * Steps the observer of the model `@model@` over samples of @origin@,
- * and prints each estimate, also exactly, in hexadecimal digits. Written by pebo-gen @version@.
+ * Steps the observer of the model `@model@` over samples of
+ * @origin@, and prints each estimate,
+ * in brackets with all its digits. Written by pebo-gen @version@.
  */
 #include <stddef.h>
 #include <stdio.h>
@@ -16,7 +17,7 @@ static const struct {
 
 static void print(const char *name, double value)
 {
-    printf("  %s = %.6g (%a)", name, value, value);
+    printf("  %s = %.6g (%.@digits@g)", name, value, value);
 }
 
 /* Zero before it is set, and of a size that the compiler knows. */
