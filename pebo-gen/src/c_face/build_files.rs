@@ -1,6 +1,6 @@
 //! The files that build the crate: Cargo's manifest, one file for make, one for `CMake`, and how to use them.
 
-use super::Face;
+use super::subject::Face;
 
 const MANIFEST: &str = include_str!("templates/Cargo.toml.in");
 const MAKEFILE: &str = include_str!("templates/Makefile");

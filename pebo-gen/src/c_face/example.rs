@@ -1,7 +1,7 @@
 //! The example: a C program that steps the observer over samples and prints its estimates.
 
 use super::samples::Origin;
-use super::{Face, Signal};
+use super::subject::{Face, Signal};
 use crate::emit::Scalar;
 
 const EXAMPLE: &str = include_str!("templates/main.c");

@@ -4,8 +4,8 @@
 //! looks at its pointers and at the tag of the observer, and hands over to the emitted code.
 
 use super::faults::FAULTS;
-use super::size::{mentions, start_name};
-use super::{Face, Signal};
+use super::size::start_name;
+use super::subject::{Face, Signal};
 
 const HEAD: &str = include_str!("templates/face_head.rs.in");
 const FAULT: &str = include_str!("templates/face_fault.rs.in");
@@ -94,24 +94,6 @@ pub(super) fn text(face: &Face<'_>) -> String {
 /// The text where it is wanted.
 fn or(wanted: bool, text: &'static str) -> &'static str {
     if wanted { text } else { "" }
-}
-
-impl Face<'_> {
-    /// Tests whether the estimator has a covariance.
-    pub(super) fn has_standard_error(&self) -> bool {
-        let has = |name| mentions(&self.module.tuned, name);
-        (has("LeastSquares") || has("AdaptiveLeastSquares")) && !has("Drem") && !has("FiniteTime")
-    }
-
-    /// Tests whether outputs arrive late.
-    pub(super) fn is_late(&self) -> bool {
-        mentions(&self.module.tuned, "LateObserver")
-    }
-
-    /// Tests whether the covariance is that of sensors.
-    pub(super) fn is_sampled(&self) -> bool {
-        mentions(&self.module.tuned, "SampledRegression")
-    }
 }
 
 /// A structure in the order of C.

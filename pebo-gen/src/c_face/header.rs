@@ -4,7 +4,7 @@
 //! their units, faults, and functions with what each does.
 
 use super::faults::FAULTS;
-use super::{Face, Signal};
+use super::subject::{Face, Signal};
 
 const HEAD: &str = include_str!("templates/header_head.h");
 const TAIL: &str = include_str!("templates/header_tail.h");

@@ -16,6 +16,7 @@ mod module;
 mod names;
 mod samples;
 mod size;
+mod subject;
 
 use crate::emit::{Emitted, Scalar};
 use pebo_design::analysis::Derivation;
@@ -23,6 +24,7 @@ use pebo_design::plant::Plant;
 
 use module::Module;
 use names::{field_names, prefix};
+use subject::{Face, Signal};
 
 pub(crate) use samples::Samples;
 
@@ -32,34 +34,6 @@ pub(crate) use samples::Samples;
 pub struct CProject {
     /// The path of each file in the folder of the crate, its parts joined by `/`, and its text.
     pub files: Vec<(String, String)>,
-}
-
-/// What all files are written from.
-struct Face<'a> {
-    plant: &'a Plant,
-    scalar: Scalar,
-    /// The emitted module.
-    module: Module,
-    /// The name in front of all that the header declares.
-    prefix: String,
-    x: Vec<Signal>,
-    y: Vec<Signal>,
-    u: Vec<Signal>,
-    parameters: Vec<Signal>,
-    /// The words of 64 bits that an observer takes at most.
-    words: usize,
-    samples: &'a Samples,
-}
-
-/// A field of a structure on both sides.
-struct Signal {
-    /// Its name in C: the author's, if C has no other use for it.
-    c: String,
-    /// Its name in the emitted module.
-    rust: String,
-    /// Its name in the model.
-    written: String,
-    unit: Option<String>,
 }
 
 impl CProject {
@@ -111,48 +85,5 @@ impl CProject {
             ("README.md".to_owned(), build_files::readme(&face)),
         ];
         Some(Self { files })
-    }
-}
-
-impl Face<'_> {
-    /// A text with the names of this face for those between at signs.
-    fn filled(&self, template: &str, more: &[(&str, &str)]) -> String {
-        let upper = self.prefix.to_uppercase();
-        let words = self.words.to_string();
-        let library = self.library();
-        let own = [
-            ("name", self.prefix.as_str()),
-            ("NAME", &upper),
-            ("model", &self.plant.name),
-            ("version", env!("CARGO_PKG_VERSION")),
-            ("scalar", self.scalar.name()),
-            ("c_scalar", self.c_scalar()),
-            ("words", &words),
-            ("library", &library),
-        ];
-        let all = more.iter().chain(&own);
-        all.fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value))
-    }
-
-    /// The name of the crate and of its library, in lower case as Rust wants it.
-    fn library(&self) -> String {
-        format!("{}_observer", self.prefix.to_lowercase())
-    }
-
-    /// The floating-point type in C.
-    fn c_scalar(&self) -> &'static str {
-        match self.scalar {
-            Scalar::F32 => "float",
-            Scalar::F64 => "double",
-        }
-    }
-
-    /// A number as a literal of C, rounded to the scalar.
-    fn c_literal(&self, value: f64) -> String {
-        match self.scalar {
-            #[expect(clippy::cast_possible_truncation, reason = "rounded to the scalar of the face")]
-            Scalar::F32 => format!("{:?}f", value as f32),
-            Scalar::F64 => format!("{value:?}"),
-        }
     }
 }

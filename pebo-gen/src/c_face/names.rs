@@ -229,8 +229,8 @@ pub(super) fn field_names(written: &[String]) -> Vec<String> {
     let mut taken: BTreeSet<String> = BTreeSet::new();
     // A name that is kept as it is goes before one that becomes the same.
     let mut names = vec![String::new(); written.len()];
-    let (kept, changed): (Vec<usize>, Vec<usize>) =
-        (0..written.len()).partition(|&place| ascii(&written[place]) == written[place]);
+    let is_kept = |name: &String| ascii(name) == *name && !RESERVED.contains(&name.as_str());
+    let (kept, changed): (Vec<usize>, Vec<usize>) = (0..written.len()).partition(|&place| is_kept(&written[place]));
     for place in kept.into_iter().chain(changed) {
         let name = ascii(&written[place]);
         let first = if RESERVED.contains(&name.as_str()) { format!("{name}_") } else { name.clone() };
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn keywords_and_names_that_become_alike_are_told_apart() {
         assert_eq!(names(&["double", "class", "unix", "_a", "__B"]), ["double_", "class_", "unix_", "a", "B"]);
-        assert_eq!(names(&["_a", "a", "double", "double_"]), ["a_2", "a", "double_", "double_2"]);
+        assert_eq!(names(&["_a", "a", "double", "double_"]), ["a_2", "a", "double_2", "double_"]);
         assert_eq!(names(&["λ", "x3bb", "_1", "_"]), ["x3bb_2", "x3bb", "n1", "it"]);
     }
 
