@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use pebo_gen::CProject;
 use pebo_gen::emit::Scalar;
@@ -80,8 +80,8 @@ impl Built {
         self.folder.join(format!("../build/host/lib{}_observer.a", self.name))
     }
 
-    /// Compiles a C program with the library, in a language, and runs it.
-    fn program(&self, text: &str, (compiler, language, standard): (&str, &str, &str)) -> String {
+    /// Compiles a C program with the library and those of other crates, in a language, and runs it.
+    fn program(&self, text: &str, (compiler, language, standard): (&str, &str, &str), others: &[&Self]) -> String {
         // Programs of one crate share a place.
         static ONE: Mutex<()> = Mutex::new(());
         let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,8 +89,13 @@ impl Built {
         std::fs::write(&source, text).expect("a file");
         let program = self.folder.join("program");
         let mut command = Command::new(compiler);
-        command.args(["-x", language, standard]).args(WARNINGS).arg("-I").arg(self.folder.join("include"));
-        command.arg(&source).args(["-x", "none"]).arg(self.library()).args(["-lpthread", "-ldl", "-lm", "-o"]);
+        command.args(["-x", language, standard]).args(WARNINGS);
+        let crates: Vec<&Self> = std::iter::once(self).chain(others.iter().copied()).collect();
+        for one in &crates {
+            command.arg("-I").arg(one.folder.join("include"));
+        }
+        command.arg(&source).args(["-x", "none"]).args(crates.into_iter().map(Self::library));
+        command.args(["-lpthread", "-ldl", "-lm", "-o"]);
         run(command.arg(&program));
         run(&mut Command::new(&program))
     }
@@ -99,7 +104,7 @@ impl Built {
     fn example(&self, project: &CProject) -> Vec<Vec<f64>> {
         let made = run(&mut Command::new(self.folder.join(format!("../build/host/{}_example", self.name))));
         for language in LANGUAGES {
-            assert_eq!(self.program(file(project, "example/main.c"), language), made, "{language:?}");
+            assert_eq!(self.program(file(project, "example/main.c"), language, &[]), made, "{language:?}");
         }
         made.lines().map(estimates).collect()
     }
@@ -121,32 +126,30 @@ fn samples(project: &CProject) -> Vec<Vec<f64>> {
     table.lines().map(row).collect()
 }
 
-/// The cart with a gate and limits, which two tests share.
-fn guarded_cart() -> &'static (CProject, Built) {
-    static CART: OnceLock<(CProject, Built)> = OnceLock::new();
-    CART.get_or_init(|| {
-        let settings = ["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"];
-        let project = project("tests/models/cart.yaml", &settings, Scalar::F32);
-        let built = Built::of("cart", &project);
+/// The crates that the tests share: two of shipped models, and a cart with a gate and limits in single precision.
+static CRATES: LazyLock<[(CProject, Built); 3]> = LazyLock::new(|| {
+    let settings = ["observer.gate=30", "observer.limits={p: [-100, 100], F: [-50, 50]}", "observer.gap=1"];
+    let built = |name, path, settings: &[&str], scalar| {
+        let project = project(path, settings, scalar);
+        let built = Built::of(name, &project);
         (project, built)
-    })
-}
-
-fn shipped(name: &'static str) -> (CProject, Built) {
-    let project = project(&format!("models/{name}.yaml"), &[], Scalar::F64);
-    let built = Built::of(name, &project);
-    (project, built)
-}
+    };
+    [
+        built("cuk", "models/cuk.yaml", &[], Scalar::F64),
+        built("dc_motor", "models/dc_motor.yaml", &[], Scalar::F64),
+        built("cart", "tests/models/cart.yaml", &settings, Scalar::F32),
+    ]
+});
 
 macro_rules! same_as_in_rust {
-    ($($test:ident: $module:ident::$model:ident, $made:expr;)+) => {$(
+    ($($test:ident: $module:ident::$model:ident, $place:literal;)+) => {$(
         #[test]
         fn $test() {
             use pebo_runtime::Real;
             use pebo_runtime::nalgebra::SVector;
             use tests::emitted::$module::{$model, NU, NX, NY, Parameters};
-            let (project, built) = $made;
-            let (printed, samples) = (built.example(&project), samples(&project));
+            let (project, built) = &CRATES[$place];
+            let (printed, samples) = (built.example(project), samples(project));
             assert_eq!((samples.len(), printed.len()), (40, 40));
             let mut observer = $model::observer(&Parameters::default()).expect("the settings of the model");
             for (sample, printed) in samples.iter().zip(&printed) {
@@ -167,16 +170,26 @@ macro_rules! same_as_in_rust {
 }
 
 same_as_in_rust! {
-    plain_with_parameters: cuk_f64::Cuk, shipped("cuk");
-    generalised_by_least_squares: dc_motor_f64::DcMotor, shipped("dc_motor");
-    known_numbers_with_a_gate_and_limits: cart_f32::Cart, guarded_cart();
+    plain_with_parameters: cuk_f64::Cuk, 0;
+    generalised_by_least_squares: dc_motor_f64::DcMotor, 1;
+    known_numbers_with_a_gate_and_limits: cart_f32::Cart, 2;
 }
 
 /// What a C program gets that makes mistakes: the fault, and an observer as before.
 #[test]
 fn mistakes_of_a_program_are_faults() {
-    let (_, built) = guarded_cart();
     for language in LANGUAGES {
-        assert_eq!(built.program(include_str!("mistakes.c"), language), "as expected\n", "{language:?}");
+        let said = CRATES[2].1.program(include_str!("mistakes.c"), language, &[]);
+        assert_eq!(said, "as expected\n", "{language:?}");
+    }
+}
+
+/// Two libraries go into one program, and neither takes an observer of the other.
+#[test]
+fn two_models_are_in_one_program() {
+    let [(_, cuk), (_, motor), _] = &*CRATES;
+    let text = include_str!("two_models.c");
+    for language in LANGUAGES {
+        assert_eq!(cuk.program(text, language, &[motor]), "as expected\n", "{language:?}");
     }
 }
