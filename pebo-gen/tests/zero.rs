@@ -42,7 +42,8 @@ fn value(formula: &Formula, point: &BTreeMap<String, f64>) -> f64 {
     match &formula.term {
         Term::Number(decimal) => decimal.to_f64(),
         Term::Name(name) => point.get(name).copied().unwrap_or(std::f64::consts::PI),
-        Term::Estimate(_) => f64::NAN,
+        // These formulas have neither.
+        Term::Estimate(_) | Term::Table(..) => f64::NAN,
         Term::Negative(operand) => -at(operand),
         Term::Binary(operator, left, right) => {
             let (a, b) = (at(left), at(right));
@@ -59,6 +60,7 @@ fn value(formula: &Formula, point: &BTreeMap<String, f64>) -> f64 {
             match row.value {
                 Value::Unary(f) => f(at(&arguments[0])),
                 Value::Binary(f) => f(at(&arguments[0]), at(&arguments[1])),
+                Value::Tabulated(_) => f64::NAN,
             }
         }
     }

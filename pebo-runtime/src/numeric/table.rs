@@ -30,7 +30,7 @@ impl<R, const N: usize, const D: usize> Table<R, N, D> {
 }
 
 impl<R: Real, const N: usize, const D: usize> Table<R, N, D> {
-    /// The value; not a number where the argument is none.
+    /// The value; not a number where the argument is none, and zero without points.
     #[inline]
     pub fn value(&self, argument: R) -> R {
         self.derivative(0, argument)
@@ -46,8 +46,7 @@ impl<R: Real, const N: usize, const D: usize> Table<R, N, D> {
     #[inline]
     pub fn derivative(&self, order: usize, argument: R) -> R {
         let mut rows = self.points.iter().zip(&self.coefficients);
-        // Without points there is no function.
-        let Some((mut from, mut row)) = rows.next() else { return argument - argument };
+        let Some((mut from, mut row)) = rows.next() else { return R::zero() };
         let mut terms = if *from <= argument { D } else { D.min(2) };
         for (point, own) in rows.take_while(|(point, _)| **point <= argument) {
             (from, row, terms) = (point, own, D);

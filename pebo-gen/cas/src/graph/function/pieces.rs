@@ -166,7 +166,7 @@ fn at<'a>(order: usize, knots: &[f64], coefficients: impl Fn(usize) -> &'a [f64]
 
 /// An enclosure of the values over an interval of arguments.
 pub(super) fn enclosure(arguments: &[Interval], p: Precision) -> Option<Interval> {
-    let (&[ref argument, ref order, ref degree], rest) = arguments.split_first_chunk::<BEFORE>()?;
+    let ([argument, order, degree], rest) = arguments.split_first_chunk::<BEFORE>()?;
     let count = |number: &Interval| (0..=rest.len()).find(|count| approx(*count) >= number.lo());
     let (order, degree) = (count(order)?, count(degree)?);
     let (knots, coefficients) = rest.split_at(rest.len() / (degree + 2));
@@ -385,7 +385,7 @@ mod tests {
         arena.as_number(table.call(&arena, arena.number(decimal(s)))).expect("a number")
     }
 
-    /// Values and slopes as SciPy 1.16 has them (`PchipInterpolator`).
+    /// Values and slopes as `SciPy` 1.16 has them (`PchipInterpolator`).
     #[test]
     fn a_cubic_is_the_usual_one_and_goes_on_with_its_slopes() {
         let cubic = table(&CELL, true);

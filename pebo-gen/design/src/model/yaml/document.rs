@@ -52,13 +52,13 @@ pub(super) struct Document {
 #[serde(untagged)]
 pub(super) enum Definition {
     Formula(Text),
-    Table(Table),
+    Table(Curve),
 }
 
 /// A table; what is missing has its diagnostic.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct Table {
+pub(super) struct Curve {
     pub(super) table: Option<Text>,
     pub(super) points: Vec<Vec<Spanned<Decimal>>>,
     pub(super) interpolation: Option<Text>,

@@ -44,11 +44,11 @@ impl Changes<'_, '_> {
         };
         let arena = self.problem.arena;
         let value = |symbol: Symbol| arena.of_symbol(symbol);
-        self.go_on(&[*next], rest, change.clone());
+        self.go_on(&[*next], rest, change);
         if self.kind == SymmetryKind::Signs {
             let mut opposite = change.clone();
             opposite.insert(*next, arena.neg(value(*next)));
-            return self.go_on(&[*next], rest, opposite);
+            return self.go_on(&[*next], rest, &opposite);
         }
         let is_state = |symbol: &Symbol| self.formulas.states.contains(symbol);
         let partners: Vec<Symbol> = rest.iter().copied().filter(|other| is_state(other) == is_state(next)).collect();
@@ -56,12 +56,12 @@ impl Changes<'_, '_> {
             let mut exchanged = change.clone();
             exchanged.extend([(*next, value(other)), (other, value(*next))]);
             let rest: Vec<Symbol> = rest.iter().copied().filter(|symbol| *symbol != other).collect();
-            self.go_on(&[*next, other], &rest, exchanged);
+            self.go_on(&[*next, other], &rest, &exchanged);
         }
     }
 
     /// Extends a change if it preserves the formulas that the symbols decided last have left without open ones.
-    fn go_on(&mut self, last: &[Symbol], open: &[Symbol], change: Change) {
+    fn go_on(&mut self, last: &[Symbol], open: &[Symbol], change: &Change) {
         let (arena, formulas) = (self.problem.arena, self.formulas);
         let set = |symbols: &[Symbol]| symbols.iter().copied().collect::<BTreeSet<Symbol>>();
         let (last, open_set) = (set(last), set(open));
@@ -70,7 +70,7 @@ impl Changes<'_, '_> {
             !any(&open_set) && any(&last)
         };
         let is_same = |formula: Expr, expected: Expr| {
-            let image = arena.substitute(formula, &change);
+            let image = arena.substitute(formula, change);
             is_zero(arena, arena.sub(image, expected), &self.problem.domain)
         };
         let keeps_rate = |(state, rate): (&Symbol, &Expr)| {
@@ -87,7 +87,7 @@ impl Changes<'_, '_> {
             && formulas.states.iter().zip(&formulas.rates).all(keeps_rate)
             && formulas.shown.iter().all(shows_same);
         if permitted {
-            self.extend(open, &change);
+            self.extend(open, change);
         }
     }
 
