@@ -26,7 +26,6 @@ const fn case(model: &'static str, within: f64) -> Case {
 const CALM: (&str, &str) = ("V_d: {0: 25, 0.2: 30, 0.4: 15, 0.6: 5, 0.8: 20}", "V_d: 25");
 
 const CASES: &[Case] = &[
-    case("battery_curve", 100.0),
     case("boost", 0.4),
     case("buck_boost", 0.4),
     case("cart_pendulum", 1.6),
@@ -101,6 +100,7 @@ fn estimates_become_the_states() {
 /// absolute values, after the start and after the step, in s. A quarter more than measured.
 const STEPS: &[(&str, f64, f64)] = &[
     ("battery", 440.0, 1.0),
+    ("battery_curve", 92.0, 1.0),
     ("bearing_only", 95.0, 920.0),
     ("bicycle", 0.025, 1e-3),
     ("boost_load", 0.0045, 0.3),

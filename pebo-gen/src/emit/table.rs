@@ -1,14 +1,14 @@
 //! Tables as constants of the module.
 //!
-//! In: the tables of the programs. Out: a constant of the runtime's `Table` for each, with its numbers as the scalar has
-//! them; and the exact table of a constant that is read back.
+//! In: the tables of the programs. Out: a constant of the runtime's `Table` for each, with its numbers as double precision
+//! has them; and the exact table of a constant that is read back.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use syn::Expr as Syntax;
 
-use super::expression::ident;
 use super::literal::{Scalar, literal, read};
+use super::module::permission::for_numbers;
 use super::names::Names;
 use pebo_cas::graph::function::pieces::Pieces;
 use pebo_cas::{Arena, Rational};
@@ -47,6 +47,7 @@ impl Tables {
 
     /// The constants; `doc` has the documentation of a line.
     pub(super) fn items(&self, arena: &Arena, scalar: Scalar, doc: impl Fn(&str) -> TokenStream) -> TokenStream {
+        let ident = |name: &str| Ident::new(name, Span::call_site());
         let kind = ident(scalar.name());
         let item = |(table, name): &(Pieces, String)| {
             let (rows, columns) = (table.knots.len(), table.coefficients.first().map_or(0, Vec::len));
@@ -56,19 +57,19 @@ impl Tables {
                  distance.",
                 arena.table_name(table)
             ));
-            let numbers = |numbers: &[Rational]| {
-                let number = |number: &Rational| number_tokens(scalar, number);
-                numbers.iter().map(number).collect::<Vec<TokenStream>>()
-            };
+            let numbers = |numbers: &[Rational]| numbers.iter().map(number_tokens).collect::<Vec<TokenStream>>();
             let points = numbers(&table.knots);
             let coefficients = table.coefficients.iter().map(|row| {
                 let row = numbers(row);
                 quote!([#(#row),*])
             });
-            let (constant, [rows, columns]) =
-                (ident(name), [rows, columns].map(proc_macro2::Literal::usize_unsuffixed));
+            let (constant, [rows, columns]) = (ident(name), [rows, columns].map(Literal::usize_unsuffixed));
+            // In either scalar, so that the text is one.
+            let numbers = table.knots.iter().chain(table.coefficients.iter().flatten());
+            let precision = for_numbers(Scalar::F32, numbers.filter_map(rounded));
             quote! {
                 #doc
+                #precision
                 const #constant: Table<#kind, #rows, #columns> =
                     Table::new([#(#points),*], [#(#coefficients),*]);
             }
@@ -77,27 +78,22 @@ impl Tables {
     }
 }
 
-/// A number as the scalar has it, in the fewest digits.
-fn number_tokens(scalar: Scalar, number: &Rational) -> TokenStream {
+/// A number as double precision has it, in the fewest digits.
+fn number_tokens(number: &Rational) -> TokenStream {
     let magnitude = number.abs();
-    let text = rounded(scalar, &magnitude).and_then(|rounded| literal(&rounded));
+    let text = rounded(&magnitude).and_then(|rounded| literal(&rounded));
     let text = text.unwrap_or_else(|| format!("{:?}", magnitude.to_f64()));
     let literal = syn::LitFloat::new(&text, Span::call_site());
     if number.is_negative() { quote!(-#literal) } else { quote!(#literal) }
 }
 
-/// The decimal of the fewest digits that is rounded as the number is.
-fn rounded(scalar: Scalar, number: &Rational) -> Option<Rational> {
-    let shortest = match scalar {
-        #[expect(clippy::cast_possible_truncation, reason = "the scalar of the module")]
-        Scalar::F32 => format!("{:e}", number.to_f64() as f32),
-        Scalar::F64 => format!("{:e}", number.to_f64()),
-    };
-    Rational::from_decimal(&shortest).ok()
+/// The decimal of the fewest digits that is rounded as the number is; compilers round it again for single precision.
+fn rounded(number: &Rational) -> Option<Rational> {
+    Rational::from_decimal(&format!("{:e}", number.to_f64())).ok()
 }
 
 /// The table whose constant this is, among those of a model; none if it is of none of them.
-pub(super) fn read_constant(scalar: Scalar, tables: &[Pieces], syntax: &Syntax) -> Option<Pieces> {
+pub(super) fn read_constant(tables: &[Pieces], syntax: &Syntax) -> Option<Pieces> {
     let Syntax::Call(call) = syntax else { return None };
     let Syntax::Path(path) = &*call.func else { return None };
     let segments: Vec<String> = path.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
@@ -108,7 +104,7 @@ pub(super) fn read_constant(scalar: Scalar, tables: &[Pieces], syntax: &Syntax) 
     let Syntax::Array(rows) = &call.args[1] else { return None };
     let rows: Vec<Vec<Rational>> = rows.elems.iter().map(list).collect::<Option<_>>()?;
     let as_held = |number: &Rational| {
-        let magnitude = rounded(scalar, &number.abs())?;
+        let magnitude = rounded(&number.abs())?;
         Some(if number.is_negative() { -&magnitude } else { magnitude })
     };
     let all = |numbers: &[Rational]| numbers.iter().map(as_held).collect::<Option<Vec<Rational>>>();

@@ -11,7 +11,6 @@ use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 use super::expr::{Expr, Node, Symbol};
 use super::function::Function;
-use super::function::pieces::{self, Pieces};
 use crate::number::interval::Interval;
 use crate::number::notation::Notation;
 use crate::{Budget, Rational};
@@ -61,8 +60,7 @@ pub struct Arena {
     /// The number of logarithms of numbers.
     number_logarithms: Cell<usize>,
     notation: Notation,
-    /// The author's names of tables.
-    tables: RefCell<FxHashMap<Pieces, String>>,
+    table_names: RefCell<FxHashMap<Vec<Rational>, String>>,
 }
 
 impl Arena {
@@ -86,7 +84,7 @@ impl Arena {
             satisfied: RefCell::default(),
             number_logarithms: Cell::default(),
             notation: Notation::default(),
-            tables: RefCell::default(),
+            table_names: RefCell::default(),
         }
     }
 
@@ -100,16 +98,9 @@ impl Arena {
         &self.notation
     }
 
-    /// Names a table, unless it has a name.
-    pub fn name_table(&self, table: Pieces, name: &str) {
-        self.tables.borrow_mut().entry(table).or_insert_with(|| name.to_owned());
-    }
-
-    /// The name of a table as a function: the author's, and that of its slope, or of a further derivative by its order.
-    pub fn table_name(&self, table: &Pieces) -> String {
-        let tables = self.tables.borrow();
-        let name = tables.get(&Pieces { order: 0, ..table.clone() }).map_or("table", String::as_str);
-        format!("{name}{}", pieces::suffix(table.order))
+    /// The author's names of tables, by their numbers.
+    pub(in crate::graph) fn table_names(&self) -> &RefCell<FxHashMap<Vec<Rational>, String>> {
+        &self.table_names
     }
 
     /// The node of an expression.

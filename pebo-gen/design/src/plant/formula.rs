@@ -32,7 +32,7 @@ pub fn lower(arena: &Arena, scope: &Scope, formula: &Formula) -> Result<Expr, Di
         }
         Term::Table(table, order, argument) => {
             let pieces = Pieces { order: *order, ..table.pieces.clone() };
-            arena.name_table(table.pieces.clone(), &table.name);
+            arena.name_table(&table.pieces, &table.name);
             for decimal in table.points.iter().flat_map(|(at, value)| [at, value]) {
                 arena.notation().keep(&exact(decimal, formula.span)?, decimal.text());
             }

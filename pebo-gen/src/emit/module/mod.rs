@@ -11,7 +11,7 @@ mod formulas;
 mod function;
 pub(crate) mod paper;
 mod parameters;
-mod permission;
+pub(in crate::emit) mod permission;
 pub(crate) mod prose;
 mod settings_words;
 pub(crate) mod signals;

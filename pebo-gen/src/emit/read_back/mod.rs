@@ -38,7 +38,7 @@ pub(super) fn confirm(
     is_zero: impl Fn(&Arena, Expr) -> bool,
 ) -> Result<(), EmitError> {
     let arena = &plant.arena;
-    let read = read(plant, definitions, scalar, tokens)?;
+    let read = read(plant, definitions, tokens)?;
     let expected = [
         ("Scalar", scalar.name()),
         ("X", "X"),
@@ -171,7 +171,7 @@ struct Read {
     paper: paper::Columns,
 }
 
-fn read(plant: &Plant, definitions: &Definitions, scalar: Scalar, tokens: &TokenStream) -> Result<Read, EmitError> {
+fn read(plant: &Plant, definitions: &Definitions, tokens: &TokenStream) -> Result<Read, EmitError> {
     let arena = &plant.arena;
     let file: syn::File =
         syn::parse2(tokens.clone()).map_err(|error| EmitError::Unreadable { code: error.to_string() })?;
@@ -202,7 +202,7 @@ fn read(plant: &Plant, definitions: &Definitions, scalar: Scalar, tokens: &Token
                 }
             }
             Item::Const(item) if item.ident.to_string().starts_with("TABLE_") => {
-                let table = read_constant(scalar, &definitions.tables(arena), &item.expr);
+                let table = read_constant(&definitions.tables(arena), &item.expr);
                 let table = table.ok_or_else(|| unreadable(item))?;
                 globals.declare(&item.ident.to_string(), Value::Table(table));
             }

@@ -47,13 +47,17 @@ impl Pieces {
         Some(Self { order, knots: knots.to_vec(), coefficients })
     }
 
+    /// The numbers that a table has in common with its derivatives.
+    fn numbers(&self) -> Vec<Rational> {
+        self.knots.iter().chain(self.coefficients.iter().flatten()).cloned().collect()
+    }
+
     /// The call of the table at an argument.
     pub fn call(&self, arena: &Arena, argument: Expr) -> Expr {
         let count = |count: usize| arena.number(i64::try_from(count).unwrap_or(i64::MAX));
         let degree = self.coefficients.first().map_or(0, |piece| piece.len().saturating_sub(1));
-        let numbers = self.knots.iter().chain(self.coefficients.iter().flatten());
         let mut arguments = vec![argument, count(self.order), count(degree)];
-        arguments.extend(numbers.map(|number| arena.number(number.clone())));
+        arguments.extend(self.numbers().into_iter().map(|number| arena.number(number)));
         arena.call(Function::Table, &arguments)
     }
 
@@ -107,6 +111,20 @@ impl Pieces {
             }
         }
         Some((bounds.iter().min()?.clone(), bounds.iter().max()?.clone()))
+    }
+}
+
+impl Arena {
+    /// Names a table, unless it has a name.
+    pub fn name_table(&self, table: &Pieces, name: &str) {
+        self.table_names().borrow_mut().entry(table.numbers()).or_insert_with(|| name.to_owned());
+    }
+
+    /// The name of a table as a function: the author's, and that of its slope, or of a further derivative by its order.
+    pub fn table_name(&self, table: &Pieces) -> String {
+        let names = self.table_names().borrow();
+        let name = names.get(&table.numbers()).map_or("table", String::as_str);
+        format!("{name}{}", suffix(table.order))
     }
 }
 
@@ -417,7 +435,7 @@ mod tests {
         let s = arena.variable("s");
         let symbol = arena.as_symbol(s).expect("a symbol");
         let (cubic, linear) = (table(&CELL, true), table(&CELL, false));
-        arena.name_table(cubic.clone(), "ocv");
+        arena.name_table(&cubic, "ocv");
         let call = cubic.call(&arena, s);
         let slope = arena.derivative(call, symbol);
         assert_eq!((arena.print(call), arena.print(slope)), ("ocv(s)".to_owned(), "ocv_slope(s)".to_owned()));
