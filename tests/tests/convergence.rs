@@ -100,7 +100,7 @@ fn estimates_become_the_states() {
 /// absolute values, after the start and after the step, in s. A quarter more than measured.
 const STEPS: &[(&str, f64, f64)] = &[
     ("battery", 440.0, 1.0),
-    ("battery_curve", 92.0, 1.0),
+    ("battery_curve", 123.0, 1.0),
     ("bearing_only", 95.0, 920.0),
     ("bicycle", 0.025, 1e-3),
     ("boost_load", 0.0045, 0.3),
