@@ -6,13 +6,16 @@
 
 use std::collections::BTreeSet;
 
+use rustc_hash::FxHashMap;
+
 use super::manifold::Manifold;
 use super::zero::is_zero;
 use crate::graph::conditions::Regularity;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
+use crate::graph::function::pieces::Pieces;
 use crate::tower::{Field, Obstacle};
-use crate::{Arena, Domain, Relation};
+use crate::{Arena, Domain, Facts, Relation};
 
 /// A border, and the jump of a function across it.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +35,9 @@ impl Domain {
             varies(*border) && !signed(*border) && !signed(arena.neg(*border))
         };
         for border in self.dividers(arena, &[expr])?.into_iter().filter(is_open) {
-            let [above, below] = [self.on_side(arena, expr, border), self.on_side(arena, expr, arena.neg(border))];
+            let pieces = |is_above: bool| with_pieces(arena, expr, (border, is_above));
+            let [above, below] =
+                [self.on_side(arena, pieces(true), border), self.on_side(arena, pieces(false), arena.neg(border))];
             let symbols = vec![BTreeSet::new(), arena.symbols_of(&[border]), BTreeSet::new()];
             let wall = Manifold::new(arena, &self.facts, vec![border], symbols).determined();
             let by = arena.sub(arena.substitute(above, &wall), arena.substitute(below, &wall));
@@ -65,6 +70,27 @@ impl Domain {
     }
 }
 
+/// A function with each table that has a point at a border as the polynomial on one side: that a border is positive does
+/// not say which piece holds far from it.
+fn with_pieces(arena: &Arena, expr: Expr, (border, is_above): (Expr, bool)) -> Expr {
+    let mut pieces: FxHashMap<Expr, Expr> = FxHashMap::default();
+    for call in arena.postorder(&[expr]) {
+        let Some((table, argument)) = Pieces::of(arena, call) else { continue };
+        for (at, knot) in table.knots.iter().enumerate() {
+            let quotient = arena.div(arena.sub(argument, arena.number(knot.clone())), border);
+            let normal = || {
+                let field = Field::over(arena, &Facts::new(), &[quotient])?;
+                Ok::<_, Obstacle>(field.show(&field.fraction(quotient)?))
+            };
+            if let Some(factor) = normal().ok().and_then(|normal| arena.as_number(normal)) {
+                let piece = at + usize::from((factor.signum() > 0) == is_above);
+                pieces.insert(call, table.branch(arena, piece, argument));
+            }
+        }
+    }
+    arena.replace(expr, &pieces)
+}
+
 /// The zeros of denominators in the arguments of bounded functions: `atan(1/r)` jumps where r changes its sign, while
 /// `1/r` leaves all bounds.
 fn bounded_poles(arena: &Arena, expr: Expr) -> Vec<Expr> {
@@ -81,6 +107,27 @@ fn bounded_poles(arena: &Arena, expr: Expr) -> Vec<Expr> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rational;
+    use crate::graph::function::pieces::through;
+
+    /// At each point of a table, not at the first alone.
+    #[test]
+    fn slopes_of_tables_jump_where_lines_meet() {
+        let arena = Arena::new();
+        let q = arena.variable("q");
+        let points = [(0, 0), (1, 1), (2, 3), (3, 3)].map(|(at, value)| (Rational::from(at), Rational::from(value)));
+        let of = |is_cubic: bool, order: usize, argument: Expr| {
+            let table = Pieces { order, ..through(&points, is_cubic).unwrap() };
+            let jumps = Domain::default().jumps(&arena, table.call(&arena, argument), |_| true).unwrap();
+            let by = |jump: &Jump| format!("{}: {}", arena.print(jump.border), arena.print(jump.by.unwrap()));
+            jumps.iter().map(by).collect::<Vec<String>>()
+        };
+        assert_eq!(of(false, 0, q), [""; 0]);
+        assert_eq!(of(false, 1, q), ["q - 1: 1", "q - 2: -2"]);
+        assert_eq!(of(false, 1, arena.scale(q, &Rational::from(-2))), ["2*q + 1: -1", "q + 1: 2"]);
+        // The last piece is level, as is what follows.
+        assert_eq!((of(true, 0, q).len(), of(true, 1, q).len(), of(true, 2, q).len()), (0, 0, 3));
+    }
 
     #[test]
     fn continuous_non_smooth_functions_have_no_jump() {
