@@ -1,7 +1,7 @@
 //! Declarations with which a transform is accepted, found by trying them.
 //!
-//! In: a search without a transform that is accepted. Out: signs and an order of states, angles among them, bounds of these, any
-//! class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals or
+//! In: a search without a transform that is accepted. Out: signs and an order of states, angles among them, bounds of
+//! these, any class of cascade, the plant without states that no output depends on, or with states among its unmeasured signals or
 //! its outputs, where with it all claims of a transform are proved. Whether the plant has the property only its author knows.
 
 use std::collections::BTreeSet;

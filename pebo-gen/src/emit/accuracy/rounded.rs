@@ -2,7 +2,8 @@
 //!
 //! In: a program, and values of its inputs in the scalar. Out: its outputs in the scalar. The result of one operation
 //! in `f64`, rounded to `f32`, is that operation in `f32`, since `f64` has more than twice its digits. Functions are
-//! those of the host: a unit in the last place from the target's, which is small beside the losses in question.
+//! those of the host, and a table with its few operations is rounded once: a unit or two in the last place from the
+//! target's, which is small beside the losses in question.
 
 use super::super::literal::Scalar;
 use pebo_cas::Function;

@@ -82,11 +82,6 @@ impl ObservabilityProblem<'_> {
     fn under_constant_inputs(&self, observed: &Observation, conditions: &[Expr], list: &mut List<'_>) {
         let Ok(zero_set) = self.zero_set(self.domain, observed) else {
             list.is_complete = false;
-            // The determinant is too long: an input that is zero at all times is found by the entries.
-            let rows = [self.rows(), observed.stack.clone()].concat();
-            for zero in self.zeros_of_entries(&rows).unwrap_or_default() {
-                let _ = list.add_zero(&self.whole(Still::Nothing), zero, &BTreeSet::new());
-            }
             return;
         };
         let (free, steady) = (self.whole(Still::Nothing), self.whole(self.inputs()));

@@ -270,6 +270,22 @@ fn equilibria_are_those_of_the_plant() {
 }
 
 /// Of `|q|*b = v` each side has its own zeros, at which q has the sign of the side, and says so.
+/// A curve that is level between two points shows nothing of its argument there.
+#[test]
+fn a_level_piece_of_a_table_is_listed() {
+    let cell = "x: [s]\ny: [V]\nu: [I]\nregression: local\nphi: [s]\nf_x: {s: -I}\ng_y: {V: e - 2*I}\n\
+                define: {e: {table: s, points: [[0, 3], [0.3, 3.3], [0.7, 3.3], [1, 3.6]]}}";
+    let lines = of(cell);
+    let hidden: Vec<&String> = lines.iter().filter(|line| line.contains("nothing is identified")).collect();
+    // At its ends it is level too, and a cell may rest there.
+    let expected = [
+        "while the plant rests and `s = 0.7` and `V = 3.3`, nothing is identified",
+        "while the plant rests and `s = 0.3` and `V = 3.3`, nothing is identified",
+        "while `s > 0.3` and `s < 0.7`, nothing is identified",
+    ];
+    assert_eq!(hidden, expected, "{lines:?}");
+}
+
 /// Of `r*u = 0` at `r > 0` the factor r has no zero; a mass that a pendulum's position shows wherever it rests is not
 /// shown where it hangs.
 #[test]
