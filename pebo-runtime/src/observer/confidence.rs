@@ -229,7 +229,9 @@ where
     ) -> Result<(SVector<M::Scalar, NY>, [bool; NR]), Fault> {
         let missing = y.map(|output| !Real::is_finite(output));
         // The last sample's, then the model's prediction from it.
-        (0..NY).filter(|output| missing[*output]).for_each(|output| y[output] = last[output]);
+        for ((output, _), &last) in y.iter_mut().zip(&missing).zip(last).filter(|((_, missing), _)| **missing) {
+            *output = last;
+        }
         y = self.unwrapped(&y);
         check(&y, u, dt)?;
         let (_, outcome) = self.propagate([before, &self.model.terms(&y)], [u, u], dt)?;
@@ -237,11 +239,17 @@ where
         let error = regressand - regressor * self.state.estimator.estimate();
         let weights = outcome.weights(dt);
         let mut left_out = [false; NR];
-        for (row, &output) in rows.iter().enumerate().filter(|(_, output)| **output < NY && missing[**output]) {
-            left_out[row] = true;
+        let errors = error.iter().zip(&weights);
+        for (row, ((left_out, output), (&error, &weight))) in left_out.iter_mut().zip(rows).zip(errors).enumerate() {
+            let (Some(true), Some(is_expected), Some(sample)) =
+                (missing.get(*output), is_expected.get(*output), y.get_mut(*output))
+            else {
+                continue;
+            };
+            *left_out = true;
             // By the first of its rows.
-            if is_expected[output] && !rows.iter().take(row).any(|before| *before == output) {
-                y[output] -= error[row] / weights[row];
+            if *is_expected && !rows.iter().take(row).any(|before| before == output) {
+                *sample -= error / weight;
             }
         }
         check(&y, u, dt)?;

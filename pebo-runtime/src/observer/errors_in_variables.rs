@@ -241,11 +241,13 @@ impl<'a, F, S: Real, const NY: usize, const NE: usize> Equations<'a, F, S, NY, N
             in_factor: [false; NR],
             here,
         };
-        for (output, &deviation) in self.sensors.iter().enumerate().filter(|(_, deviation)| **deviation > S::zero()) {
-            let [mut above, mut below] = [*y; 2];
-            above[output] += deviation;
-            below[output] -= deviation;
-            let [above, below] = [(self.sides)(&above), (self.sides)(&below)];
+        let columns = residuals.slopes.data.0.iter_mut().zip(self.sensors).enumerate();
+        for (output, (column, &deviation)) in columns.filter(|(_, (_, deviation))| **deviation > S::zero()) {
+            let [above, below] = [deviation, -deviation].map(|change| {
+                let mut y = *y;
+                y.iter_mut().skip(output).take(1).for_each(|output| *output += change);
+                (self.sides)(&y)
+            });
             let factor = (above.factor - below.factor) * half;
             let slopes = (above.known - below.known) * half - factor * self.eta;
             let spread = factor * self.root;
@@ -257,7 +259,7 @@ impl<'a, F, S: Real, const NY: usize, const NE: usize> Equations<'a, F, S, NY, N
                 residuals.variances[row] += slope * slope + (bend + bend) * bend + spread.row(row).norm_squared();
                 residuals.in_factor[row] |= factor.row(row).iter().any(|change| *change != S::zero());
             }
-            residuals.slopes.set_column(output, &slopes);
+            [*column] = slopes.data.0;
         }
         residuals
     }

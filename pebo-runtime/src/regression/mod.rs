@@ -31,10 +31,18 @@ pub struct Sides<S: Real, const NR: usize, const NE: usize> {
 impl<S: Real, const NR: usize, const NE: usize> Sides<S, NR, NE> {
     /// Makes these rows say nothing, `0 = 0 eta`.
     pub(crate) fn leave_out(&mut self, rows: &[bool; NR]) {
-        for row in (0..NR).filter(|row| rows[*row]) {
-            self.known[row] = S::zero();
-            self.factor.row_mut(row).fill(S::zero());
-        }
+        leave_out((&mut self.known, &mut self.factor), rows);
+    }
+}
+
+/// Makes these rows of both sides say nothing, `0 = 0 eta`.
+fn leave_out<S: Real, const NR: usize, const NE: usize>(
+    (known, factor): (&mut SVector<S, NR>, &mut SMatrix<S, NR, NE>),
+    rows: &[bool; NR],
+) {
+    let columns = factor.data.0.iter_mut().chain(&mut known.data.0);
+    for (entry, _) in columns.flat_map(|column| column.iter_mut().zip(rows)).filter(|(_, is_left_out)| **is_left_out) {
+        *entry = S::zero();
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Outcome, RegressionOperator, Rows, Sides};
+use super::{Outcome, RegressionOperator, Rows, Sides, leave_out};
 use crate::numeric::sum::blemish;
 use crate::{Fault, Real, Turn};
 
@@ -43,10 +43,7 @@ impl<S: Real, const NR: usize, const NE: usize> Rows<S, NR> for SampledRegressio
     }
 
     fn without(mut self, left_out: &[bool; NR]) -> Self {
-        for row in (0..NR).filter(|row| left_out[*row]) {
-            self.regressand[row] = S::zero();
-            self.regressor.row_mut(row).fill(S::zero());
-        }
+        leave_out((&mut self.regressand, &mut self.regressor), left_out);
         self
     }
 }
