@@ -178,6 +178,7 @@ class Plant:
         self.assumed = [pair for text in stated.get("assume", []) for pair in relations(text)]
         self.assumed += [pair for text in derived.get("conditions", []) for pair in relations(text)]
         self.identities = formulas(stated.get("identities", []))
+        self.known = {NAMES[name]: formula(value) for name, value in stated.get("known", {}).items()}
         self.angles = {NAMES[name]: formula(period) for name, period in stated.get("angles", {}).items()}
         # An output that is given by its value is that value.
         self.given = {NAMES[name]: formula(value) for name, value in stated.get("g_y", {}).items()}
@@ -764,8 +765,16 @@ class Certificate:
             # Along a trajectory the extension is z.
             self.regressor = self.regressor.subs(dict(zip(self.xi, self.phi)), simultaneous=True)
         self.primitive = self.sides("primitive")[1] if "primitive_1" in derived else None
-        self.width = self.regressor.cols
         self.is_linear = [*derived["eta"].values()] == derived["theta"]
+        self.unknowns = dict(zip(derived["theta"] if self.is_linear else derived["eta"], derived["eta"].values()))
+        # Of the others all that follows is said.
+        fixed = [name in derived.get("by start", []) for name in self.unknowns]
+        for column in reversed([column for column, is_fixed in enumerate(fixed) if is_fixed]):
+            self.regressor.col_del(column)
+            if self.primitive is not None:
+                self.primitive.col_del(column)
+        self.rest = [unknown for unknown, is_fixed in zip(self.z if self.is_linear else self.unknowns, fixed) if not is_fixed]
+        self.width = self.regressor.cols
         self.parameters = {symbol for symbol in self.plant.parameters if symbol.is_Symbol}
         self.motion = derived.get("trajectories", {})
         self.sets = Trajectories(self)
@@ -890,10 +899,21 @@ class Certificate:
         """On each cell of the domain the regressor has full column rank; if it takes excitation, with its derivatives along the
         plant. A cell that is listed may have a lower one; if all are, several have it together."""
         kind, shown = self.derived["identifiability"], self.derived.get("determinant of phi_1' phi_1")
+        self.by_start()
+        if self.width == 0:
+            return
         if shown and self.width <= 3 and self.primitive is None:
             start = self.regressor.subs(self.at_start)
             self.vanishes("the determinant of phi_1' phi_1", (start.T * start).det() - formula(shown))
         self.full_rank(f"identifiability: {kind}", self.width if kind == "excitation" else 1, ())
+
+    def by_start(self):
+        """The unknowns that are zero where the states start at their known values and the extension at phi."""
+        start = [component.subs(self.plant.known, simultaneous=True) for component in self.phi]
+        signals = {*self.plant.x, *self.plant.y, *self.plant.u, *self.plant.w}
+        zeros = {theta: ZERO for theta, at in zip(self.theta, start) if not at.free_symbols & signals and at.is_finite is not False}
+        for name in self.derived.get("by start", []):
+            self.vanishes(f"by the known start: {name}", formula(self.unknowns[name]).subs(zeros))
 
     def full_rank(self, claim, orders, constant):
         """Says whether the regressor, with its derivatives below an order, has full rank on each cell that is not listed."""
@@ -971,7 +991,7 @@ class Certificate:
 
     def blind(self, claim, entry, special):
         """On the trajectories of a condition some directions are hidden, and these combinations are identified."""
-        plant, unknowns = self.plant, self.z if self.is_linear else [NAMES[name] for name in self.derived["eta"]]
+        plant, unknowns = self.plant, self.rest if self.is_linear else [NAMES[name] for name in self.rest]
         hidden = [[plant.valued(e).xreplace(self.at_start) for e in formulas(d)] for d in entry.get("hidden", [])]
         seen = [
             [sp.diff(plant.valued(e), unknown).xreplace(self.at_start) for unknown in unknowns]

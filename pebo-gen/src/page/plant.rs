@@ -155,6 +155,12 @@ fn comparisons(html: &mut Html, setter: &Setter<'_>, plant: &Plant) {
     let identities: Vec<String> =
         plant.identities.iter().map(|identity| format!("{}<mo>=</mo><mn>0</mn>", setter.expr(identity.expr))).collect();
     listed(html, "Zero along every motion, and used by every claim:", &identities);
+    let known: Vec<String> = plant
+        .known
+        .iter()
+        .map(|(s, value)| format!("{}<mo>=</mo>{}", setter.symbol(*s), setter.expr(value.expr)))
+        .collect();
+    listed(html, "Known where the observer starts:", &known);
     let angles: Vec<String> = plant
         .angles
         .iter()

@@ -143,6 +143,8 @@ struct UnusedReport {
 struct IdentifiabilityReport {
     verdict: &'static str,
     kind: Option<&'static str>,
+    /// The unknowns that the known start fixes, counted from 1.
+    by_start: Vec<usize>,
     singular_where: Vec<String>,
     /// Full rank of the regressor is proved everywhere else.
     everywhere_else: bool,
@@ -397,6 +399,7 @@ fn identifiability(plant: &Plant, claim: &Claim<Identifiability>) -> Identifiabi
     IdentifiabilityReport {
         verdict: claim.verdict.word(),
         kind: result.map(|r| r.kind.word()),
+        by_start: result.map(|r| r.by_start.iter().map(|position| position + 1).collect()).unwrap_or_default(),
         singular_where: result.map(|r| r.singular_where.clone()).unwrap_or_default(),
         everywhere_else: result.is_some_and(|r| r.everywhere_else),
         direction: result.and_then(|r| r.direction.as_ref()).map(|d| printed(arena, d)),

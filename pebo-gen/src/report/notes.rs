@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use pebo_cas::{Arena, Symbol};
 use pebo_design::analysis::{
-    Derivation, Excitation, Gram, Outcome, Positive, Regression, RegressionKind, Trajectories, UnusedOutput, Verdict,
+    Derivation, Excitation, Gram, Identifiability, Outcome, Positive, Regression, RegressionKind, Trajectories,
+    UnusedOutput, Verdict,
 };
 use pebo_design::plant::{Noisier, Plant, RelationForm, TransformOrigin};
 use pebo_design::source::{Code, Diagnostic, counted, listed};
@@ -130,8 +131,19 @@ pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> 
 pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     let Some(result) = &derivation.identifiability.result else { return Vec::new() };
     let implicit = derivation.regression.result.as_ref().is_some_and(|r| r.kind == RegressionKind::Implicit);
-    let regressor = if implicit { "Phi_1 - d/dt P_1" } else { "Phi_1" };
-    let mut lines = vec![match result.kind {
+    let regressor = match (implicit, result.by_start.is_empty()) {
+        (false, true) => "Phi_1",
+        (false, false) => "the rest of Phi_1",
+        (true, true) => "Phi_1 - d/dt P_1",
+        (true, false) => "the rest of Phi_1 - d/dt P_1",
+    };
+    let mut lines = by_start(plant, derivation, result).into_iter().collect::<Vec<String>>();
+    lines.push(match result.kind {
+        Excitation::Instant
+            if derivation.regression.result.as_ref().is_some_and(|r| r.eta.len() == result.by_start.len()) =>
+        {
+            return lines;
+        }
         Excitation::Instant => format!("{}: {regressor} has full column rank", result.kind.word()),
         Excitation::Excitation if result.trajectories.as_ref().is_some_and(Trajectories::is_divided) => {
             format!("over time: {regressor} has full column rank over the cells of the domain combined")
@@ -140,7 +152,7 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
         Excitation::Never => {
             format!("{}: the outputs do not depend on one direction of the unknowns", result.kind.word())
         }
-    }];
+    });
     if !result.singular_where.is_empty() {
         let places = listed(result.singular_where.iter().map(String::as_str));
         lines.push(format!("except where {places}: there one instant does not identify all unknowns"));
@@ -150,6 +162,18 @@ pub(crate) fn identifiability(plant: &Plant, derivation: &Derivation) -> Vec<Str
     }
     lines.extend(result.trajectories.iter().flat_map(|trajectories| trajectories.lines(plant)));
     lines
+}
+
+/// The note on unknowns that the known start fixes.
+pub(crate) fn by_start(plant: &Plant, derivation: &Derivation, result: &Identifiability) -> Option<String> {
+    let eta = &derivation.regression.result.as_ref()?.eta;
+    let fixed: Vec<String> = result.by_start.iter().map(|position| plant.arena.print(eta[*position])).collect();
+    (!fixed.is_empty()).then(|| {
+        format!(
+            "by the known start, where the extension is phi, {} = 0: no output corrects it later",
+            fixed.join(" = ")
+        )
+    })
 }
 
 /// The note that the determinant of `Phi_1' Phi_1` is positive, with its proof.

@@ -44,11 +44,14 @@ pub(crate) fn of(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     remarks.extend(Growth::of_long(plant, derivation).and_then(long).map(|lines| remark("cost", lines)));
     if derivation.outcome == Outcome::Accepted {
         let drift = derivation.drift(plant);
-        remarks.extend(
-            drift.map(|drift| {
-                remark("drift", vec![grows(plant, drift), format!("remedy: {}", remedy(plant, derivation))])
-            }),
-        );
+        remarks.extend(drift.map(|drift| {
+            let remedy = if drift.uncorrected.is_empty() {
+                format!("remedy: {}", remedy(plant, derivation))
+            } else {
+                format!("no output corrects {}: {RESTART_KNOWN}", names(plant, &drift.uncorrected))
+            };
+            remark("drift", vec![grows(plant, drift), remedy])
+        }));
     }
     remarks
 }
@@ -180,16 +183,20 @@ fn rest(plant: &Plant, class: Class, point: &OperatingPoint) -> Vec<String> {
 }
 
 fn grows(plant: &Plant, drift: &Drift) -> String {
-    let names = |symbols: &[Symbol]| {
-        let names: Vec<String> = symbols.iter().map(|s| plant.arena.name(*s)).collect();
-        listed(names.iter().map(String::as_str))
-    };
-    let integrators = names(&drift.integrators);
+    let integrators = names(plant, &drift.integrators);
     if drift.integrated.is_empty() {
         return format!("the constant h makes {integrators} grow without bound");
     }
-    format!("a constant bias of {} makes {integrators} grow without bound", names(&drift.integrated))
+    format!("a constant bias of {} makes {integrators} grow without bound", names(plant, &drift.integrated))
 }
+
+fn names(plant: &Plant, symbols: &[Symbol]) -> String {
+    let names: Vec<String> = symbols.iter().map(|s| plant.arena.name(*s)).collect();
+    listed(names.iter().map(String::as_str))
+}
+
+/// The remedy where no output shows the state.
+const RESTART_KNOWN: &str = "restart the observer wherever the states are known again";
 
 /// The runtime's remedy for drift.
 fn remedy(plant: &Plant, derivation: &Derivation) -> &'static str {

@@ -87,7 +87,7 @@ impl Conditions {
     }
 
     /// The list: an expression that is nonnegative and nonzero is listed as positive.
-    pub(super) fn listed(self) -> Vec<DomainCondition> {
+    pub(super) fn listed(&self) -> Vec<DomainCondition> {
         let has =
             |key: Expr, wanted: Relation| self.listed.iter().any(|(k, (_, relation))| (*k, *relation) == (key, wanted));
         let merged = |(key, (part, relation)): &(Expr, DomainCondition)| match relation {

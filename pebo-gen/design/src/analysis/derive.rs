@@ -64,6 +64,10 @@ impl Derivation {
         unsettled.extend(
             unmet.into_iter().filter_map(|(code, what, condition)| Some(without_value(plant, code, what, condition?))),
         );
+        if let Some(diagnostic) = start_without_value(plant, &conditions.listed()) {
+            unsettled.push(diagnostic);
+            left_inverse.doubt();
+        }
         // Without a budget no point is looked for: that takes nothing back.
         let is_found = || is_somewhere(plant, conditions.domain(), cascade.result.as_ref(), regression.result.as_ref());
         if !plant.arena.budget().is_exhausted() && !is_found() {
@@ -184,6 +188,25 @@ fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Domain
             .help("choose a phi in which the rates of the outputs are polynomials, exponentials, sines and cosines");
     }
     diagnostic.help(format!("if it holds, write `{condition}` under `assume`"))
+}
+
+/// The diagnostic of a known start at which a condition of the proofs fails.
+fn start_without_value(plant: &Plant, conditions: &[DomainCondition]) -> Option<Diagnostic> {
+    let arena = &plant.arena;
+    let (first, value) = plant.known.first()?;
+    let values = plant.known.iter().map(|(state, value)| (*state, value.expr)).collect();
+    let fails = |(part, relation): &&DomainCondition| {
+        let at_start = arena.substitute(arena.substitute(*part, &values), &plant.domain().fixed);
+        arena.symbols_of(&[at_start]).is_empty() && arena.fails_of_number((at_start, *relation))
+    };
+    let assumed = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation));
+    let needed: Vec<DomainCondition> = conditions.iter().copied().chain(assumed).collect();
+    let (part, relation) = needed.iter().find(fails)?;
+    let message =
+        format!("the proofs need `{} {}`, which fails where the plant starts", arena.print(*part), relation.sign());
+    let state = arena.name(*first);
+    let help = format!("leave `{state}` out of `known`, or choose a phi that does without the condition");
+    Some(Diagnostic::error(Code::LeftInverseUndecided, value.span, message).help(help))
 }
 
 /// Tests whether a point of the domain was found at which all formulas have values.

@@ -262,6 +262,22 @@ impl Regression {
         }
     }
 
+    /// The same without the unknowns at these positions, which are zero. They are named by the coordinates z where they are
+    /// theta.
+    #[must_use]
+    pub fn without(&self, plant: &Plant, positions: &[usize]) -> Self {
+        let mut rest = self.clone();
+        if self.is_linear(plant) {
+            rest.eta_symbols.clone_from(&plant.z);
+        }
+        retain(&mut rest.eta, positions);
+        retain(&mut rest.eta_symbols, positions);
+        for row in rest.phi_1.iter_mut().chain(&mut rest.primitive_1) {
+            retain(row, positions);
+        }
+        rest
+    }
+
     /// Indices of the equations without an unknown: of known rates.
     pub fn without_unknowns(&self, arena: &Arena) -> Vec<usize> {
         if self.kind == RegressionKind::Static {
@@ -299,7 +315,7 @@ impl Regression {
     }
 }
 
-/// Takes the entries at these positions out of a list of all rows.
+/// Takes the entries at these positions out of a list.
 fn retain<T>(rows: &mut Vec<T>, left_out: &[usize]) {
     let mut row = 0..;
     rows.retain(|_| row.next().is_none_or(|row| !left_out.contains(&row)));
@@ -310,6 +326,9 @@ fn retain<T>(rows: &mut Vec<T>, left_out: &[usize]) {
 pub struct Identifiability {
     /// The kind of excitation.
     pub kind: Excitation,
+    /// The positions of unknowns that are zero because the start of the plant is known; what else is said here is of the
+    /// regression without them.
+    pub by_start: Vec<usize>,
     /// The conditions under which the regressor loses rank, for a reader.
     pub singular_where: Vec<String>,
     /// True if the regressor provably has full rank everywhere else.
@@ -332,6 +351,7 @@ impl Identifiability {
     pub(crate) fn new(kind: Excitation) -> Self {
         Self {
             kind,
+            by_start: Vec::new(),
             singular_where: Vec::new(),
             everywhere_else: false,
             constants: Vec::new(),
@@ -451,6 +471,15 @@ impl Derivation {
     #[must_use]
     pub fn is_local(&self) -> bool {
         self.regression.result.as_ref().is_some_and(|regression| regression.is_local)
+    }
+
+    /// The unknowns that the known start fixes and no output shows.
+    pub fn fixed_by_start(&self, plant: &Plant) -> Vec<Symbol> {
+        let (Some(regression), Some(identifiability)) = (&self.regression.result, &self.identifiability.result) else {
+            return Vec::new();
+        };
+        let symbols = if regression.is_linear(plant) { &plant.theta } else { &regression.eta_symbols };
+        identifiability.by_start.iter().map(|position| symbols[*position]).collect()
     }
 
     /// The domain conditions of the way from estimates back to x, and of a local regression at these, beside the

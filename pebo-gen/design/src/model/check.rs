@@ -35,6 +35,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.rates(&model.f_y, &scope, (&y, "y", "f_y"), (&x, "f_x"));
         pass.belong(&model.g_y, &y, "g_y");
         pass.belong(&model.phi_left, &x, "phi_left");
+        pass.belong(&model.known, &x, "known");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
         pass.belong(&model.observer.sensors, &y, "sensors");

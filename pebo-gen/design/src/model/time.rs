@@ -32,7 +32,7 @@ impl Model {
 
     /// The formulas of the plant, its transform and its domain.
     fn formulas(&self) -> impl Iterator<Item = &Formula> {
-        let maps = [&self.define, &self.f_x, &self.f_y, &self.g_y, &self.phi_left, &self.angles];
+        let maps = [&self.define, &self.f_x, &self.f_y, &self.g_y, &self.phi_left, &self.known, &self.angles];
         let maps = maps.into_iter().flatten().map(|entry| &entry.value);
         let assumed = self
             .assume

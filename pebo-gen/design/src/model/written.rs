@@ -61,6 +61,8 @@ pub struct Model {
     pub phi_left: Vec<Entry<Formula>>,
     /// Expressions that are zero by physics.
     pub identities: Vec<Formula>,
+    /// States that start at these values.
+    pub known: Vec<Entry<Formula>>,
     /// States and outputs that are angles, with their periods.
     pub angles: Vec<Entry<Formula>>,
     /// Units of parameters and signals.

@@ -12,6 +12,7 @@ pub mod class;
 mod conditions;
 mod contradiction;
 mod formula;
+mod known;
 pub(crate) mod matrix;
 mod own;
 mod period;

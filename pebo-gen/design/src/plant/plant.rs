@@ -61,6 +61,8 @@ pub struct Plant {
     /// Expressions in x, y and u that are zero by physics; of an output that is given by its value, the difference of
     /// the two.
     pub identities: Vec<Formula>,
+    /// States that start at these values, in parameters, whenever the observer starts.
+    pub known: Vec<(Symbol, Formula)>,
     /// States and outputs that are angles, with their period.
     pub angles: Vec<(Symbol, Formula)>,
     /// Units of parameters and signals, as far as the author gives them.
@@ -318,6 +320,7 @@ impl Plant {
         plant.x.retain(|state| !states.contains(&state.symbol));
         plant.assumptions.retain(|assumption| !holds(assumption.expr));
         plant.conditions.retain(|condition| !holds(condition.expr));
+        plant.known.retain(|(state, _)| !states.contains(state));
         plant.angles.retain(|(state, _)| !states.contains(state));
         plant
     }
@@ -329,6 +332,23 @@ impl Plant {
         let mut plant = self.clone();
         plant.angles.extend(angles.iter().map(|(state, period)| (*state, Formula { expr: *period, span })));
         plant
+    }
+
+    /// The components of the transform with their values at the start, in parameters: those that the known states fix
+    /// whatever the others and the outputs are.
+    pub fn known_components(&self) -> Vec<(usize, Expr)> {
+        let values: BTreeMap<Symbol, Expr> = self.known.iter().map(|(state, value)| (*state, value.expr)).collect();
+        let constants: BTreeSet<Symbol> = self.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let domain = self.assumed();
+        let at_start = |(component, phi): (usize, &Formula)| {
+            let value = self.arena.substitute(phi.expr, &values);
+            let is_fixed = self.arena.symbols_of(&[value]).is_subset(&constants);
+            let asked = self.arena.domain_conditions(&[value], Regularity::Defined);
+            let has_value = || asked.iter().all(|condition| domain.grants(&self.arena, *condition));
+            (is_fixed && has_value()).then_some((component, value))
+        };
+        let components = self.phi.iter().enumerate();
+        if values.is_empty() { Vec::new() } else { components.filter_map(at_start).collect() }
     }
 
     /// The components of the transform.

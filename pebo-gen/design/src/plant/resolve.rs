@@ -84,6 +84,11 @@ impl Plant {
         identities.extend(values::identities(&arena, &outputs));
         let time = model.time.and(u.last().copied());
         values::move_along(&arena, &states, &mut outputs, time, &constants);
+        let known = problems.all(model.known.iter().map(|entry| {
+            let value = within(&entry.value, &with(&[]), "a value at the start")?;
+            Ok((arena.symbol(&entry.name.value), value))
+        }));
+        super::known::check(&arena, &known, &assumptions, &parameters, &mut problems);
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
             super::period::positive(&arena, &domain, period)?;
@@ -131,6 +136,7 @@ impl Plant {
             phi,
             phi_left: (!phi_left.is_empty()).then_some(phi_left),
             identities,
+            known,
             angles,
             units,
             terms,

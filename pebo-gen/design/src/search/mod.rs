@@ -27,6 +27,7 @@ mod declaration;
 mod found;
 mod frame;
 mod functions;
+mod known;
 mod lifted;
 mod partial;
 mod sample;
@@ -82,6 +83,10 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         candidates.retain(|candidate| local.as_ref().is_none_or(|local| local.formulas() != candidate.formulas()));
         candidates.splice(0..0, local);
     }
+    if !is_found(&candidates) {
+        let known = || known::from_known_start(&problem, class, &accepted);
+        candidates.splice(0..0, plant.arena.budget().share(FOR_PRODUCTS, known));
+    }
     let found = is_found(&candidates);
     let plain = candidates.iter().any(|c| c.is_full() && c.derivation.class == Class::Pebo);
     let (affine, bound) = if plain || class == Some(Class::Gpebo) {
@@ -113,9 +118,11 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         smooth.is_some_and(|bound| bound.excludes())
             && (class.is_some() || generalised().is_some_and(|bound| bound.excludes()))
     };
-    let excluded = excluded && again();
+    // What outputs do not show, a known start may.
+    let is_start_unknown = plant.known.is_empty();
+    let excluded = excluded && is_start_unknown && again();
     let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
-    let symmetry = if found { None } else { symmetry() };
+    let symmetry = if found || !is_start_unknown { None } else { symmetry() };
     let is_asked = plant.local_regression.is_some();
     let mut declared = || declared(&problem, &mut candidates, class, symmetry.as_ref(), is_asked);
     let declared = if found { Vec::new() } else { declared() };

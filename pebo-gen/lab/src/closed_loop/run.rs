@@ -58,7 +58,7 @@ impl Scenario {
         let mut machine = LoopState::start(self)?;
         let mut errors = Formulas::new(&self.errors);
         let mut scores: Vec<Scorer> = self.scored.iter().map(|scored| Scorer::new(scored.period)).collect();
-        let (mut watch, mut expected) = (ExcitationMonitor::default(), ExpectedErrors::default());
+        let (mut watch, mut expected) = (ExcitationMonitor::beside(&self.design.fixed), ExpectedErrors::default());
         let mut certain = CertaintyMonitor::new(&self.design.wanted);
         let mut assumed = self.assumed.watch();
         let mut outside = vec![false; self.scored.len()];

@@ -70,6 +70,8 @@ pub(crate) struct Design {
     pub(crate) unknowns: usize,
     /// The estimated unknowns, as formulas in theta.
     pub(crate) unknown_names: Vec<String>,
+    /// The positions of those that the known start fixes.
+    pub(crate) fixed: Vec<usize>,
     /// Regression and estimator.
     pub(crate) settings: Settings,
     /// The wanted standard errors.
@@ -115,7 +117,9 @@ impl Design {
             RegressionKind::Implicit => regression.primitive_0[..regression.primitive_0.len() - instants].to_vec(),
             RegressionKind::Static => Vec::new(),
         };
-        let starts = primitives.into_iter().filter(|_| settings.output);
+        let starts: Vec<Expr> = primitives.into_iter().filter(|_| settings.output).collect();
+        let by_start = derivation.identifiability.result.iter().flat_map(|result| &result.by_start);
+        let fixed = by_start.map(|position| starts.len() + position).collect();
         let states: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
         let periods = match plant.periods_of_outputs() {
             Some(periods) => Interpreter::new(&compile(&[], &periods)?).evaluate(|_| f64::NAN).collect(),
@@ -168,7 +172,9 @@ impl Design {
             },
             coordinates: plant.phi.len(),
             unknowns: regression.eta.len(),
+            fixed,
             unknown_names: starts
+                .into_iter()
                 .map(|primitive| match arena.as_symbol(primitive) {
                     Some(output) => format!("{}(0)", arena.name(output)),
                     None => format!("({})(0)", arena.print(primitive)),

@@ -150,6 +150,8 @@ const TOLD: f64 = 0.5;
 #[derive(Debug, Default)]
 pub(crate) struct ExcitationMonitor {
     state: State,
+    /// The components that the known start of the plant fixes: no data have to show them.
+    fixed: Vec<usize>,
     /// The first standard errors of the states.
     first: Option<Vec<f64>>,
     weakest: usize,
@@ -166,6 +168,11 @@ enum State {
 }
 
 impl ExcitationMonitor {
+    /// The monitor of the components beside these, which are fixed.
+    pub(crate) fn beside(fixed: &[usize]) -> Self {
+        Self { fixed: fixed.to_vec(), ..Self::default() }
+    }
+
     /// Takes the information at this instant, and the standard errors of the states where these are predicted.
     ///
     /// Loss is judged by a component's data, and not by its share alone: where the extension starts again from the
@@ -178,7 +185,8 @@ impl ExcitationMonitor {
         let least = |values: &mut dyn Iterator<Item = f64>| {
             values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
-        let (weakest, share) = least(&mut information.shares.iter().copied());
+        let open = |(place, share): (usize, &f64)| if self.fixed.contains(&place) { 1.0 } else { *share };
+        let (weakest, share) = least(&mut information.shares.iter().enumerate().map(open));
         let known = information.data.iter().zip(&information.shares).map(|(data, share)| data * share.max(ROUNDING));
         let (faintest, certainty) = least(&mut known.zip(&self.enough).map(|(known, enough)| known * enough));
         let is_lost = !information.data.is_empty() && certainty < 0.5;
@@ -225,6 +233,18 @@ mod tests {
 
     fn names() -> Vec<String> {
         ["theta1", "theta2"].map(str::to_owned).to_vec()
+    }
+
+    #[test]
+    fn a_component_that_the_start_fixes_needs_no_data() {
+        let mut information = Gramian::<3>::new(2, 0.0);
+        information.add(&row(0.0), 0.1);
+        for (fixed, is_determined) in [(&[][..], false), (&[1], true), (&[0], false)] {
+            let mut watch = ExcitationMonitor::beside(fixed);
+            watch.look(1.0, &information.component_information(), None);
+            let excitation = watch.excitation(&names());
+            assert_eq!(matches!(excitation, Excitation::Converged { .. }), is_determined, "{fixed:?}: {excitation:?}");
+        }
     }
 
     #[test]

@@ -108,7 +108,7 @@ impl Settings {
         if !written.has_gains() {
             return Self::of_known(request, (derivation, states), shown, problems);
         }
-        if let Some(refusal) = crate::settings::refused(request.model, derivation) {
+        if let Some(refusal) = crate::settings::refused(request.model, request.plant, derivation) {
             problems.push(refusal);
             return None;
         }

@@ -98,7 +98,7 @@ impl<'a> Piece<'a> {
             scores: replay.scored.iter().map(|scored| Scorer::new(scored.period)).collect(),
             // None of these is small in itself: the score is that of the last tenth.
             misfits: residuals.outputs.iter().map(|_| Scorer::new(Some(0.0))).collect(),
-            watch: ExcitationMonitor::default(),
+            watch: ExcitationMonitor::beside(&design.fixed),
             expected: ExpectedErrors::default(),
             certain: CertaintyMonitor::new(&design.wanted),
             assumed: replay.assumed.watch(),

@@ -6,7 +6,7 @@ use pebo_design::source::{Code, Diagnostic};
 
 /// The refusal of a setting, where the regression is of first order at the extension: that has to be the estimate at each
 /// sample, and rows of the past are of estimates that have been left.
-pub(crate) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnostic> {
+pub(super) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnostic> {
     let regression = derivation.regression.result.as_ref()?;
     if !regression.is_local {
         return None;

@@ -87,7 +87,9 @@ impl Deviations {
             of(&written.sensors, *symbol).or_else(recorded).or_else(|| simulated(*symbol)).unwrap_or_else(assumed)
         };
         let far = if is_local { NEAR } else { START };
-        let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| far * magnitude(*symbol));
+        let is_known = |symbol: &Symbol| plant.known.iter().any(|(known, _)| known == symbol);
+        let assumed = |symbol: &Symbol| if is_known(symbol) { 0.0 } else { far * magnitude(*symbol) };
+        let start = |symbol: &Symbol| of(&written.start, *symbol).unwrap_or_else(|| assumed(symbol));
         let drift = |state: &State| match of(&written.disturbance, state.symbol) {
             Some(deviation) => Some(deviation),
             None if silent => {

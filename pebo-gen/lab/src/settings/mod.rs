@@ -22,6 +22,7 @@ mod digits;
 mod equations;
 mod feedthrough;
 mod kind;
+mod known;
 mod late;
 mod local;
 mod magnitude;
@@ -40,10 +41,9 @@ use pebo_design::analysis::Derivation;
 use pebo_design::model::{Decimal, Model};
 use pebo_design::plant::settings::{Limits, Rebase, cannot_rebase};
 use pebo_design::plant::{Plant, Settings};
-use pebo_design::source::Diagnostics;
+use pebo_design::source::{Diagnostic, Diagnostics};
 
 pub use derived::DerivedSettings;
-pub(crate) use local::refused;
 pub use shown::Shown;
 pub(crate) use start::start;
 
@@ -55,6 +55,11 @@ pub(crate) use equations::SampleRows;
 pub(crate) use prediction::Prediction;
 #[cfg(feature = "simulate")]
 pub use words::{KnownNumbers, Numbers, Value};
+
+/// The refusal of settings that the regression or the known start of the plant does not admit.
+pub(crate) fn refused(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Diagnostic> {
+    local::refused(model, derivation).or_else(|| known::refused(model, plant, derivation))
+}
 
 impl DerivedSettings {
     /// The settings of a model's observer, with what samples show besides; none where the model is incomplete. Mistakes in
@@ -72,7 +77,7 @@ impl DerivedSettings {
             problems.push(cannot_rebase(&plant.name, rebase));
             return None;
         }
-        if let Some(refusal) = refused(model, derivation) {
+        if let Some(refusal) = refused(model, plant, derivation) {
             problems.push(refusal);
             return None;
         }

@@ -29,6 +29,11 @@ impl<'a> Point<'a> {
         let mut point = Self::of_model(model, plant);
         point.values.extend(&shown.first);
         if shown.is_recorded {
+            for (state, value) in &plant.known {
+                if !point.values.contains_key(state) {
+                    point.set(*state, Some(value.expr));
+                }
+            }
             // Nobody says where the plant of a recording started: a state has the order of magnitude of its unit.
             for state in &plant.x {
                 point.values.entry(state.symbol).or_insert(UNIT);
@@ -64,7 +69,8 @@ impl<'a> Point<'a> {
             let written = simulation.initial.iter().find(|entry| entry.name.value == name).map(|entry| &entry.value);
             let course = || firsts(&simulation.plant).find(|(known, _)| *known == name).map(|(_, formula)| formula);
             let value = written.or_else(course).and_then(|formula| lower(arena, &scope, formula).ok());
-            point.set(symbol, value);
+            let known = || plant.known.iter().find(|(known, _)| *known == symbol).map(|(_, value)| value.expr);
+            point.set(symbol, value.or_else(known));
         }
         for output in &plant.y {
             if !point.values.contains_key(&output.symbol) {

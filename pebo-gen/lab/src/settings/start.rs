@@ -10,6 +10,7 @@ use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 
 use super::digits::rounded;
+use super::known;
 use super::point::Point;
 use super::shown::Shown;
 
@@ -28,8 +29,18 @@ pub(crate) fn start(model: &Model, plant: &Plant, derivation: &Derivation, shown
     beginning(&Point::of(model, plant, shown), plant, derivation)
 }
 
-/// The same for a plant that starts at a known point.
-pub(super) fn beginning(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+/// The same for a plant that starts at a point, with the components that the known start of the plant fixes.
+pub(super) fn beginning(point: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
+    let fixed = known::components(plant, point);
+    let zeros = || (!fixed.is_empty()).then(|| vec![Rational::from(0); plant.phi.len()]);
+    let mut begun = near(point, plant, derivation).or_else(zeros)?;
+    for (component, value) in fixed {
+        begun[component] = value;
+    }
+    Some(begun)
+}
+
+fn near(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
     let mut left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
     let local = derivation.regression.result.as_ref().filter(|regression| regression.is_local);

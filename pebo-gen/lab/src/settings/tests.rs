@@ -374,3 +374,32 @@ fn noise_of_samples_that_drive_the_observer_needs_their_period() {
     let plain = tank.replace("q - k*sqrt(h)", "q - k").replace("NOISE", "").replace("STEP", "");
     assert!(derived(&plain).0.is_some());
 }
+
+#[test]
+fn the_extension_begins_where_the_plant_is_known_to_start() {
+    let cart = "model: m\nparameters: {m: 2, l: 0.25}\nx: [p, d]\ny: [v]\nu: [F]\nf_x: {p: v, d: 0}\nf_y: {v: (F + d)/m}\n\
+                phi: [2*p, d]\nknown: {p: 3*l}\n";
+    let scenario = "simulation: {step: 0.01, initial: {d: 0.3, v: 0}, control: {F: 0}}\n";
+    let (settings, problems) = derived(&format!("{cart}{scenario}"));
+    let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+    // Of the output form, in which the output stands first.
+    assert_eq!(settings.chi_0, [Rational::from(0), Rational::new(3, 2).unwrap(), Rational::from(0)]);
+    let Estimator::AdaptiveLeastSquares(Covariance { start, .. }, _) = &settings.estimator else {
+        panic!("{settings:?}")
+    };
+    let [sensor, known, unknown] = [0, 1, 2].map(|place| start[place].to_f64());
+    // As good as exact, and no zero, of which there is no inverse.
+    assert!(known > 0.0 && known <= 1e-12 * sensor.min(unknown), "{start:?}");
+    let gains = "observer: {estimator: least-squares, covariance: 1, filter: 10}\n";
+    assert_eq!(derived(&format!("{cart}{gains}")).0.unwrap().chi_0, [Rational::new(3, 2).unwrap(), Rational::from(0)]);
+    for (observer, key) in [
+        ("{extension: [0, 0]}", "`extension`"),
+        ("{gap: 1}", "`gap`"),
+        ("{estimator: drem, gain: 1, regressor_gain: 1, filter: 10}", "`estimator`"),
+    ] {
+        let (settings, problems) = derived(&format!("{cart}{scenario}observer: {observer}\n"));
+        assert!(settings.is_none() && problems[0].message.starts_with(key), "{observer}: {problems:?}");
+    }
+    let (settings, problems) = derived(&format!("{cart}{gains}").replace("l: 0.25", "l: null"));
+    assert!(settings.is_none() && problems[0].message.contains("`l`, which has no value"), "{problems:?}");
+}

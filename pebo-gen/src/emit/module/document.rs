@@ -229,6 +229,7 @@ fn fundamental(derivation: &Derivation, rebase: bool) -> Vec<String> {
 fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     let Some(drift) = derivation.drift(plant) else { return Vec::new() };
     let remedy = match (derivation.class, rebase) {
+        _ if !drift.uncorrected.is_empty() => "No output corrects it: restart the observer where the states are known.",
         (Class::Pebo, true) => "Use `Observer::step_without_drift`, which keeps the extension bounded.",
         (Class::Gpebo, true) => "Use `Observer::rebasing`, which makes the extension start again from the estimate.",
         (_, false) => "Restart the observer before the extension grows so large that rounding matters.",
@@ -287,6 +288,14 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             }
             Excitation::Never => "- Identifiability: none".to_owned(),
         };
+        if !identifiability.by_start.is_empty() {
+            let known: Vec<String> = plant
+                .known
+                .iter()
+                .map(|(state, value)| format!("`{} = {}`", arena.name(*state), arena.print(value.expr)))
+                .collect();
+            line += &format!("; the observer starts where {}, which no output shows", known.join(" and "));
+        }
         if !identifiability.singular_where.is_empty() {
             let conditions: Vec<String> =
                 identifiability.singular_where.iter().map(|condition| format!("`{condition}`")).collect();

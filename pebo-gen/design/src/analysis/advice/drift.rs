@@ -12,6 +12,8 @@ use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Ver
 pub struct Drift {
     /// Components whose rate is free of the extension and not provably zero.
     pub integrators: Vec<Symbol>,
+    /// Those of them that the known start fixes and no output corrects.
+    pub uncorrected: Vec<Symbol>,
     /// The outputs and inputs that they integrate.
     pub integrated: Vec<Symbol>,
 }
@@ -32,7 +34,10 @@ impl Drift {
         let rates: Vec<Expr> = open.iter().map(|row| cascade.h[*row]).collect();
         let read = arena.symbols_of(&rates);
         let signals = plant.y.iter().map(|output| output.symbol).chain(plant.commanded());
+        let fixed = derivation.fixed_by_start(plant);
+        let is_uncorrected = |row: &&usize| fixed.contains(&plant.theta[**row]);
         Some(Self {
+            uncorrected: open.iter().filter(is_uncorrected).map(|row| extension[*row]).collect(),
             integrators: open.iter().map(|row| extension[*row]).collect(),
             integrated: signals.filter(|signal| read.contains(signal)).collect(),
         })

@@ -9,6 +9,7 @@
 pub(in crate::analysis) mod trajectory;
 
 mod analytic;
+mod by_start;
 mod components;
 mod crossing;
 mod divided;
@@ -39,8 +40,33 @@ use self::problem::ObservabilityProblem;
 use self::undecided::{falls_apart, open};
 use super::design::{Cascade, Claim, Excitation, Identifiability, LeftInverse, Regression, Verdict};
 
-/// Decides how the unknowns are identified.
+/// Decides how the unknowns are identified: by the outputs, or else by these and the known start.
 pub(super) fn prove(
+    plant: &Plant,
+    domain: &Domain,
+    cascade: &Cascade,
+    regression: &Regression,
+    left_inverse: Option<&LeftInverse>,
+    found: &mut Vec<Diagnostic>,
+) -> Claim<Identifiability> {
+    let mut reported = Vec::new();
+    let claim = by_outputs(plant, domain, cascade, regression, left_inverse, &mut reported);
+    let with_start = || by_start::decided(&ObservabilityProblem { plant, domain, cascade, regression, left_inverse });
+    match if claim.verdict == Verdict::Proved { None } else { with_start() } {
+        // What the start does not mend is said of the outputs.
+        Some((claim, open)) if claim.verdict != Verdict::Refuted => {
+            found.extend(open);
+            claim
+        }
+        _ => {
+            found.append(&mut reported);
+            claim
+        }
+    }
+}
+
+/// Decides how the outputs identify the unknowns.
+fn by_outputs(
     plant: &Plant,
     domain: &Domain,
     cascade: &Cascade,

@@ -27,7 +27,7 @@ pub(super) fn never(
     let arena = &plant.arena;
     let direction = &directions[0];
     let entries: Vec<String> = direction.iter().map(|e| arena.print(*e)).collect();
-    let linear = regression.eta.iter().all(|e| arena.as_symbol(*e).is_some_and(|s| plant.theta.contains(&s)));
+    let linear = regression.is_linear(plant);
     let unknown = if linear { "theta" } else { "eta" };
     let moving = regression.eta.iter().zip(direction).filter(|(_, d)| linear && !arena.is_zero(**d));
     let component = |e: Expr| plant.theta.iter().position(|theta| arena.as_symbol(e) == Some(*theta));

@@ -32,6 +32,7 @@ use std::cell::OnceCell;
 use super::design::{Claim, Verdict};
 use super::identifiability::undecided::not_all_used;
 use super::limited::limited;
+use crate::plant::Plant;
 use crate::source::Diagnostic;
 use build::Obstruction;
 use pool::{Pool, Rest};
@@ -51,8 +52,22 @@ struct Tried {
     failures: Vec<(Selection, Obstruction)>,
 }
 
-/// Proves or refutes both claims.
+/// Proves or refutes both claims: by the outputs, or else by these and the known start of the plant.
 pub(super) fn prove(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
+    if premises.plant.known_components().is_empty() {
+        return prove_from(premises, found);
+    }
+    let unknown_start = Plant { known: Vec::new(), ..premises.plant.clone() };
+    let mut reported = Vec::new();
+    let claims = prove_from(Premises { plant: &unknown_start, ..premises }, &mut reported);
+    if claims.identifiability.verdict != Verdict::Proved {
+        return prove_from(premises, found);
+    }
+    found.append(&mut reported);
+    claims
+}
+
+fn prove_from(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
     let pool = Pool::of(premises);
     if premises.plant.local_regression.is_some()
         && let Some(local) = local::decided(&pool)

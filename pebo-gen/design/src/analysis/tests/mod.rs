@@ -1,6 +1,7 @@
 //! Verdicts that were wrong once, each on the smallest plant that showed it.
 
 mod cells;
+mod known;
 mod local;
 mod outputs;
 mod seldom;

@@ -18,8 +18,9 @@ use crate::model::written::{CascadeClass, RegressionForm};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
 /// The keys of an attribute.
-const KEYS: [&str; 7] = ["title", "reference", "class", "regression", "assume", "angles", "units"];
+const KEYS: [&str; 8] = ["title", "reference", "class", "regression", "assume", "known", "angles", "units"];
 
+const KNOWN: &str = "known(p = 0.0)";
 const ANGLES: &str = "angles(q = 2.0 * PI)";
 const UNITS: &str = "units(L = \"H\", i = \"A\")";
 
@@ -31,6 +32,7 @@ pub(super) struct Arguments {
     pub(super) class: Option<Spanned<CascadeClass>>,
     pub(super) regression: Option<Spanned<RegressionForm>>,
     pub(super) assume: Vec<Chain>,
+    pub(super) known: Vec<MetaNameValue>,
     pub(super) angles: Vec<MetaNameValue>,
     pub(super) units: Vec<Entry<Spanned<String>>>,
 }
@@ -82,6 +84,9 @@ impl Arguments {
                     self.assume.extend(diagnostics.keep(chain));
                 }
             }
+            ("known", Meta::List(list)) => {
+                self.known.extend(pairs(list, "a state needs its value at the start", KNOWN, spans)?);
+            }
             ("angles", Meta::List(list)) => {
                 self.angles.extend(pairs(list, "an angle needs a period", ANGLES, spans)?);
             }
@@ -95,9 +100,10 @@ impl Arguments {
                 return Err(unsupported(spans.of(meta), format!("`{name}` takes a text"))
                     .help(format!("write `{name} = \"..\"`")));
             }
-            ("assume" | "angles" | "units", _) => {
+            ("assume" | "known" | "angles" | "units", _) => {
                 let example = match name.as_str() {
                     "assume" => "assume(L > 0)",
+                    "known" => KNOWN,
                     "angles" => ANGLES,
                     _ => UNITS,
                 };

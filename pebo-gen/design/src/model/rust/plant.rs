@@ -86,7 +86,7 @@ pub(super) fn read(
     let phi_left =
         pass.reader.items.function("phi_left").map(|item| pass.entries(item, components)).unwrap_or_default();
     let identities = pass.reader.items.function("identities").map(|item| pass.list(item)).unwrap_or_default();
-    let (assume, angles) = pass.attribute(&arguments);
+    let (assume, [known, angles]) = pass.attribute(&arguments);
     let Signals { x, y, u, w } = pass.signals;
     let title = arguments.title.or_else(|| documented(module, spans));
     Some(Model {
@@ -110,6 +110,7 @@ pub(super) fn read(
         phi,
         phi_left,
         identities,
+        known,
         angles,
         units: arguments.units,
         observer: Observer::default(),
@@ -271,7 +272,7 @@ impl<'a> ModuleReader<'a> {
     }
 
     /// The arguments of the attribute, in which signals are called by their names alone.
-    fn attribute(&mut self, arguments: &Arguments) -> (Vec<Comparison>, Vec<Entry<Formula>>) {
+    fn attribute(&mut self, arguments: &Arguments) -> (Vec<Comparison>, [Vec<Entry<Formula>>; 2]) {
         let mut locals = Locals::new();
         for (letter, fields) in
             [("x", &self.signals.x), ("y", &self.signals.y), ("u", &self.signals.u), ("w", &self.signals.w)]
@@ -287,17 +288,20 @@ impl<'a> ModuleReader<'a> {
             let comparison = self.comparison(chain, &mut locals);
             assume.extend(self.reader.diagnostics.keep(comparison));
         }
-        let mut angles = Vec::new();
-        for pair in &arguments.angles {
-            let span = self.reader.spans.of(&pair.path);
-            let name = Spanned { value: TokenSpans::path(&pair.path), span };
-            let period = self.reader.number(&pair.value, &mut locals);
-            if let Some(period) = self.reader.diagnostics.keep(period) {
-                angles.push(Entry { name, value: period.formula });
+        let values = [&arguments.known, &arguments.angles].map(|pairs| {
+            let mut values = Vec::new();
+            for pair in pairs {
+                let span = self.reader.spans.of(&pair.path);
+                let name = Spanned { value: TokenSpans::path(&pair.path), span };
+                let value = self.reader.number(&pair.value, &mut locals);
+                if let Some(value) = self.reader.diagnostics.keep(value) {
+                    values.push(Entry { name, value: value.formula });
+                }
             }
-        }
+            values
+        });
         self.reader.integers = false;
-        (assume, angles)
+        (assume, values)
     }
 
     fn comparison(&mut self, chain: &Chain, locals: &mut Locals) -> Result<Comparison, Diagnostic> {

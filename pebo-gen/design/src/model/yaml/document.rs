@@ -37,6 +37,7 @@ pub(super) struct Document {
     pub(super) phi: Vec<Text>,
     pub(super) phi_left: Vec<Entry<Text>>,
     pub(super) identities: Vec<Text>,
+    pub(super) known: Vec<Entry<Text>>,
     pub(super) angles: Vec<Entry<Text>>,
     pub(super) units: Vec<Entry<Text>>,
     pub(super) observer: Observer,

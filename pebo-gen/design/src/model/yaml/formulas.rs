@@ -25,10 +25,19 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
     let phi = pass.list(&document.phi);
     let phi_left = pass.entries(document.phi_left);
     let identities = pass.list(&document.identities);
+    let known = pass.entries(document.known);
     let angles = pass.entries(document.angles);
     let class = pass.class(document.lti, document.mechanical, document.electromechanical);
     let recording = document.recording.map(|entries| Recording::of(pass.entries(entries)));
-    let simulation = document.simulation.map(|simulation| pass.simulation(simulation));
+    let mut simulation = document.simulation.map(|simulation| pass.simulation(simulation));
+    // A run begins where the start is known to be, unless it says otherwise.
+    if let Some(simulation) = &mut simulation {
+        let is_named = |name: &str| simulation.initial.iter().any(|own| own.name.value == name);
+        let is_state = |name: &str| document.x.iter().any(|state| state.value == name);
+        let is_missing = |entry: &&Entry<Formula>| is_state(&entry.name.value) && !is_named(&entry.name.value);
+        let missing: Vec<Entry<Formula>> = known.iter().filter(is_missing).cloned().collect();
+        simulation.initial.extend(missing);
+    }
     Some(Model {
         name: document.model?,
         title: document.title,
@@ -50,6 +59,7 @@ pub(super) fn parse(document: Document, source: &Source, diagnostics: &mut Diagn
         phi,
         phi_left,
         identities,
+        known,
         angles,
         units: document.units,
         observer: document.observer,

@@ -156,6 +156,12 @@ pub(super) const MODEL: &[Key] = &[
         "The states in z1, z2, .. and the outputs; derived if left out; some states only make a partial observer",
     ),
     optional("identities", FORMULAS, "identities: [a^2 + b^2 - 1]", "Expressions that are zero by physics"),
+    optional(
+        "known",
+        RATES,
+        "known: {p: 0}",
+        "States that start at these values, in parameters, whenever the observer starts: the proof uses them where the outputs do not show the states",
+    ),
     optional("angles", RATES, "angles: {q: 2*pi}", "States and outputs that are angles, with their periods"),
     optional(
         "units",
