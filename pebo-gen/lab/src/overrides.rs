@@ -7,7 +7,7 @@ use pebo_design::model::Estimator;
 pub struct Overrides {
     /// The source of the control law's estimates: `observer`, `truth`, or a baseline.
     pub feedback: Option<String>,
-    /// The seed of all chance: noise, jitter, dropped samples; [`Overrides::SEED`] if absent.
+    /// The seed of all chance; [`Overrides::SEED`] if absent.
     pub seed: Option<u64>,
     /// The duration in seconds.
     pub duration: Option<f64>,

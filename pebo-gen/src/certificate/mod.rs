@@ -129,7 +129,7 @@ fn tables(model: &Model) -> Vec<(String, Literal)> {
 }
 
 /// A matrix with the depth of lists that its author gave it.
-fn matrix(name: &str, matrix: Option<&Matrix<Formula>>) -> Option<(String, Literal)> {
+fn matrix(name: &str, matrix: Option<&Matrix>) -> Option<(String, Literal)> {
     let matrix = matrix?;
     let literal = match (matrix.depth, matrix.rows.first()) {
         (0, Some(row)) => Literal::text(row.first()?),

@@ -9,8 +9,10 @@ use std::collections::{HashMap, HashSet};
 use super::definitions::circles;
 use super::names::{admit, derivative_of};
 use super::recording::Recording;
+use super::section::{Names, Value};
+use super::simulation::{Baseline, Simulation};
 use super::spanned::{Entry, Spanned};
-use super::written::{Baseline, Model, Simulation};
+use super::written::Model;
 use super::{Decimal, Formula};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest, quoted};
 
@@ -26,9 +28,7 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
     pass.name(&model.name);
     let scope = pass.declare(model.names(), &[]);
     pass.circles(&model.define);
-    let x = Group::new(&model.x, "a state of x");
-    let y = Group::new(&model.y, "an output of y");
-    let both = Group::new(model.x.iter().chain(&model.y), "a state of x or y");
+    let [x, y, both] = [Names::X, Names::Y, Names::XOrY].map(|names| Group::of(names, model));
     if !model.x.is_empty() && !model.y.is_empty() {
         pass.complete(&model.f_x, &model.x, "f_x");
         pass.rates(&model.f_x, &scope, (&x, "x", "f_x"), (&y, "f_y"));
@@ -38,52 +38,20 @@ pub fn check(model: &Model, diagnostics: &mut Diagnostics) {
         pass.belong(&model.known, &x, "known");
         pass.belong(&model.angles, &both, "angles");
         pass.belong(&model.units, &Group::new(model.declared(), "a parameter or a signal of x, y, u or w"), "units");
-        pass.belong(&model.observer.sensors, &y, "sensors");
-        pass.belong(&model.observer.delay.each, &y, "delay");
-        pass.belong(&model.observer.start, &x, "start");
-        pass.belong(&model.observer.disturbance, &both, "disturbance");
-        pass.belong(&model.observer.wanted, &x, "wanted");
-        for wanted in &model.observer.wanted {
-            pass.positive(Some(&wanted.value), "the standard error that is wanted");
-        }
+        pass.entries(&model.observer, model);
         pass.patience(model);
-        let sampled = Group::new(model.y.iter().chain(&model.u), "an output of y or an input of u");
-        pass.belong(&model.observer.limits, &sampled, "limits");
         if let Some(recording) = &model.recording {
             pass.recording(recording, model);
         }
         if let Some(simulation) = &model.simulation {
-            pass.belong(&simulation.initial, &both, "initial");
-            pass.belong(&simulation.control, &Group::new(&model.u, "an input of u"), "control");
-            pass.belong(&simulation.noise, &y, "noise");
-            pass.belong(&simulation.bias, &y, "bias");
-            pass.belong(&simulation.quantisation, &y, "quantisation");
-            pass.belong(&simulation.delay.each, &y, "delay");
-            pass.belong(&simulation.every, &y, "every");
-            let parameters = model.parameters.iter().map(|entry| &entry.name);
-            let true_values = Group::new(parameters.chain(&model.x), "a parameter or a state of x");
-            pass.belong(&simulation.plant, &true_values, "plant");
-            for baseline in &simulation.baselines {
-                match &baseline.value {
-                    Baseline::Equations(equations) => pass.belong(&equations.estimate, &x, "estimate"),
-                    Baseline::Kalman(filter) => {
-                        pass.belong(&filter.sensors, &y, "sensors");
-                        pass.belong(&filter.start, &x, "start");
-                        pass.belong(&filter.disturbance, &both, "disturbance");
-                        pass.belong(&filter.initial, &x, "initial");
-                    }
-                    Baseline::Luenberger(observer) => pass.belong(&observer.initial, &x, "initial"),
-                }
-            }
+            pass.entries(simulation, model);
         }
     }
     pass.units(model);
     pass.inverted(model);
     pass.measured(model);
-    pass.known(&model.observer.sensors, [&model.observer.start, &model.observer.disturbance]);
-    for delay in model.observer.delay.written() {
-        pass.not_negative(delay, "a delay");
-    }
+    model.observer.check_estimator(pass.diagnostics);
+    pass.numbers(&model.observer);
     model.observer.check(pass.diagnostics);
     if let Some(simulation) = &model.simulation {
         pass.simulation(simulation, &scope, (&model.u, &model.w));
@@ -109,6 +77,20 @@ impl<'a> Group<'a> {
     fn new(names: impl IntoIterator<Item = &'a Spanned<String>>, what: &'static str) -> Self {
         let names: Vec<&str> = names.into_iter().map(|name| name.value.as_str()).collect();
         Self { set: names.iter().copied().collect(), names, what }
+    }
+
+    /// The names that entries of a section's map are for.
+    fn of(names: Names, model: &'a Model) -> Self {
+        let parameters = model.parameters.iter().map(|entry| &entry.name);
+        match names {
+            Names::X => Self::new(&model.x, "a state of x"),
+            Names::Y => Self::new(&model.y, "an output of y"),
+            Names::XOrY => Self::new(model.x.iter().chain(&model.y), "a state of x or y"),
+            Names::U => Self::new(&model.u, "an input of u"),
+            Names::YOrU => Self::new(model.y.iter().chain(&model.u), "an output of y or an input of u"),
+            Names::ParameterOrX => Self::new(parameters.chain(&model.x), "a parameter or a state of x"),
+            Names::Signal => Self::new(model.x.iter().chain(&model.y).chain(&model.u), "a state, output or input"),
+        }
     }
 
     /// The names for which there is no entry.
@@ -182,9 +164,9 @@ impl DeclarationCheck<'_> {
 
     /// A recording has signals of the plant, and its rows are placed in time in one way.
     fn recording(&mut self, recording: &Recording, model: &Model) {
-        let signals = || model.x.iter().chain(&model.y).chain(&model.u);
-        self.belong(&recording.signals, &Group::new(signals(), "a state, output or input"), "recording");
-        if let Some(name) = signals().find(|name| name.value == Recording::STEP) {
+        self.entries(recording, model);
+        let mut signals = model.x.iter().chain(&model.y).chain(&model.u);
+        if let Some(name) = signals.find(|name| name.value == Recording::STEP) {
             let message = format!("`{}` is reserved for the period of a recording", name.value);
             self.diagnostics.push(
                 Diagnostic::error(Code::ReservedName, name.span, message)
@@ -238,10 +220,36 @@ impl DeclarationCheck<'_> {
     }
 
     /// Every entry has a name of the group.
-    fn belong<T>(&mut self, entries: &[Entry<T>], group: &Group<'_>, section: &str) {
-        let strangers = entries.iter().map(|entry| &entry.name);
-        for name in strangers.filter(|name| !group.set.contains(name.value.as_str())) {
+    fn belong(&mut self, entries: &dyn Value, group: &Group<'_>, section: &str) {
+        for name in entries.names().into_iter().filter(|name| !group.set.contains(name.value.as_str())) {
             self.diagnostics.push_with(|| stranger(name, group, section));
+        }
+    }
+
+    /// Entries below a section are for the names that its rows say.
+    fn entries(&mut self, section: &dyn Value, model: &Model) {
+        for row in section.rows() {
+            if let Some(names) = row.names {
+                self.belong(row.value, &Group::of(names, model), row.key);
+            }
+            self.entries(row.value, model);
+        }
+    }
+
+    /// Numbers below a section are in the ranges that its rows say.
+    fn numbers(&mut self, section: &dyn Value) {
+        for row in section.rows() {
+            if let Some(limit) = row.limit {
+                let numbers = row.value.numbers().into_iter().enumerate();
+                for (index, number) in numbers.filter(|(_, number)| !(limit.admits)(number.value.to_f64())) {
+                    let names = row.value.names();
+                    let name = names.get(index).map_or("", |name| &name.value);
+                    let message = limit.message.replace("<name>", name);
+                    let diagnostic = Diagnostic::error(Code::NumberOutOfRange, number.span, message);
+                    self.diagnostics.push(diagnostic.help(limit.help));
+                }
+            }
+            self.numbers(row.value);
         }
     }
 
@@ -300,8 +308,7 @@ impl DeclarationCheck<'_> {
         model: &Scope<'_>,
         (u, w): (&[Spanned<String>], &[Spanned<String>]),
     ) {
-        self.positive(simulation.duration.as_ref(), "the duration");
-        self.positive(simulation.step.as_ref(), "the step");
+        self.numbers(simulation);
         // The course of a signal of `w` is given here, under the name that it has already.
         let signals = simulation.signals.iter().map(|entry| &entry.name);
         let signals = signals.filter(|name| w.iter().all(|known| known.value != name.value));
@@ -320,7 +327,6 @@ impl DeclarationCheck<'_> {
         let define = simulation.define.iter().map(|entry| &entry.name);
         let own = self.declare(signals.into_iter().chain(define), &[model]);
         self.circles(&simulation.define);
-        self.sensors(simulation);
         for signal in simulation.signals.iter().chain(&simulation.plant) {
             for pair in signal.value.windows(2) {
                 let [before, after] = pair else { continue };
@@ -337,21 +343,11 @@ impl DeclarationCheck<'_> {
                     let group = Group::new(states(), "a state of the baseline");
                     self.belong(&equations.initial, &group, "initial");
                 }
-                Baseline::Kalman(filter) => self.known(&filter.sensors, [&filter.start, &filter.disturbance]),
                 Baseline::Luenberger(observer) => self.poles(&observer.poles),
+                Baseline::Kalman(_) | Baseline::Extended(_) => {}
             }
         }
         self.feedback(simulation);
-    }
-
-    /// Standard deviations are none below zero; a sensor has one.
-    fn known(&mut self, sensors: &[Entry<Spanned<Decimal>>], others: [&[Entry<Spanned<Decimal>>]; 2]) {
-        for deviation in sensors {
-            self.positive(Some(&deviation.value), "the standard deviation of a sensor");
-        }
-        for deviation in others.into_iter().flatten() {
-            self.not_negative(&deviation.value, "a standard deviation");
-        }
     }
 
     /// The longest gap has room for a step.
@@ -367,39 +363,6 @@ impl DeclarationCheck<'_> {
                     .also(step.span, "the step is here")
                     .help("write the time of several steps: after a longer one the observer begins anew"),
             );
-        }
-    }
-
-    /// Checks the effects of sensors on samples.
-    fn sensors(&mut self, simulation: &Simulation) {
-        for deviation in &simulation.noise {
-            self.not_negative(&deviation.value, "a standard deviation");
-        }
-        for step in &simulation.quantisation {
-            self.not_negative(&step.value, "the step of a quantisation");
-        }
-        for every in &simulation.every {
-            let number = every.value.value.to_f64();
-            if number < 1.0 || number.fract() != 0.0 || number > f64::from(u32::MAX) {
-                let message = format!("`every` of `{}` is a number of samples", every.name.value);
-                self.diagnostics.push(
-                    Diagnostic::error(Code::NumberOutOfRange, every.value.span, message)
-                        .help("write a whole number above zero: 1 for every sample"),
-                );
-            }
-        }
-        for delay in simulation.delay.written() {
-            self.not_negative(delay, "a delay");
-        }
-        for (share, end, what, help) in [
-            (&simulation.jitter, 0.5, "`jitter`", "write it as a share of the step, as `jitter: 0.3` for 30 %"),
-            (&simulation.dropped, 1.0, "`dropped`", "write a probability, as `dropped: 0.2` for every fifth sample"),
-        ] {
-            let Some(share) = share.as_ref().filter(|share| !(0.0..end).contains(&share.value.to_f64())) else {
-                continue;
-            };
-            let message = format!("{what} must be 0 or more, and below {end}");
-            self.diagnostics.push(Diagnostic::error(Code::NumberOutOfRange, share.span, message).help(help));
         }
     }
 
@@ -428,14 +391,6 @@ impl DeclarationCheck<'_> {
         );
     }
 
-    fn not_negative(&mut self, number: &Spanned<Decimal>, what: &str) {
-        if number.value.to_f64() < 0.0 {
-            let message = format!("{what} must not be negative");
-            self.diagnostics
-                .push(Diagnostic::error(Code::NumberOutOfRange, number.span, message).help("write 0 for none"));
-        }
-    }
-
     /// Poles are in the left half of the plane, and each there once.
     fn poles(&mut self, poles: &[Spanned<Decimal>]) {
         for (index, pole) in poles.iter().enumerate() {
@@ -450,15 +405,6 @@ impl DeclarationCheck<'_> {
             self.diagnostics.push(
                 Diagnostic::error(Code::NumberOutOfRange, pole.span, message)
                     .help("write distinct numbers below zero, as `poles: [-100, -110]`"),
-            );
-        }
-    }
-
-    fn positive(&mut self, number: Option<&Spanned<Decimal>>, what: &str) {
-        if let Some(number) = number.filter(|number| number.value.to_f64() <= 0.0) {
-            let message = format!("{what} must be positive");
-            self.diagnostics.push(
-                Diagnostic::error(Code::NumberOutOfRange, number.span, message).help("write a number above zero"),
             );
         }
     }

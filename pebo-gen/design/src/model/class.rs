@@ -1,161 +1,79 @@
 //! Plants that are written by their class: a few matrices in place of equations.
-//!
-//! The types are generic in the entry: a text as read, a [`Formula`] after parsing.
 
-#[cfg(feature = "yaml")]
-use serde::Deserialize;
-
-use super::formula::{Decimal, Formula};
-use super::spanned::Spanned;
+use super::formula::Formula;
+use super::section::{Number, Text, Value, section};
 use crate::source::Span;
 
 /// A class with its formulas.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Class {
     /// A linear, time-invariant plant.
-    Lti(Lti<Formula>),
+    Lti(Lti),
     /// A mechanical plant in Hamiltonian form.
-    Mechanical(Mechanical<Formula>),
+    Mechanical(Mechanical),
     /// Coils that move a mass.
-    Electromechanical(Electromechanical<Formula>),
+    Electromechanical(Electromechanical),
 }
 
 /// A matrix as written.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-pub struct Matrix<F> {
+pub struct Matrix {
     /// The span.
     pub span: Span,
     /// The depth of its lists: 0 for a single entry, 1 for a plain list, 2 for a list of rows.
     pub depth: usize,
     /// The entries; one row unless the depth is 2, and all rows of one length.
-    pub rows: Vec<Vec<F>>,
+    pub rows: Vec<Vec<Formula>>,
 }
 
-/// `x' = A11 x + A12 y + B1 u`, `y' = A21 x + A22 y + B2 u`; a block that is absent is zero.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
-#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-pub struct Lti<F> {
-    /// From x to its rate.
-    pub a11: Option<Matrix<F>>,
-    /// From y to the rate of x.
-    pub a12: Option<Matrix<F>>,
-    /// From x to the rate of y.
-    pub a21: Option<Matrix<F>>,
-    /// From y to its rate.
-    pub a22: Option<Matrix<F>>,
-    /// From the inputs to the rate of x.
-    pub b1: Option<Matrix<F>>,
-    /// From the inputs to the rate of y.
-    pub b2: Option<Matrix<F>>,
-    /// The factor of x in the transform `T1 x + T2 y`; derived where it is absent.
-    pub t1: Option<Matrix<F>>,
-    /// The factor of y in the transform; derived with `t1`.
-    pub t2: Option<Matrix<F>>,
-}
+impl Value for Matrix {}
 
-/// The energy `p' M^-1 p / 2 + V(q)` with forces `G(q) u`, and a frame `T(q)`: the momenta are x, the
-/// positions y.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(rename_all = "UPPERCASE", bound(deserialize = "F: Deserialize<'de>")))]
-#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-pub struct Mechanical<F> {
-    /// The inertia matrix in the positions.
-    pub m: Option<Matrix<F>>,
-    /// The potential energy in the positions.
-    pub v: Option<F>,
-    /// The action of the inputs on the momenta.
-    pub g: Option<Matrix<F>>,
-    /// The frame: the transform is `T(q)' p`; searched for where it is absent.
-    pub t: Option<Matrix<F>>,
-}
-
-/// The fluxes `L(q) i + mu(q)` with `d/dt(..) = -R i + B u`: the position is x, the currents are the first
-/// outputs y.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(bound(deserialize = "F: Deserialize<'de>")))]
-#[cfg_attr(feature = "yaml", serde(deny_unknown_fields))]
-pub struct Electromechanical<F> {
-    /// The number of coils, checked against the rest.
-    pub coils: Option<Spanned<Decimal>>,
-    /// Inductances in the position.
-    #[cfg_attr(feature = "yaml", serde(rename = "L"))]
-    pub inductance: Option<Matrix<F>>,
-    /// Flux of permanent magnets in the position.
-    pub mu: Option<Matrix<F>>,
-    /// Resistances.
-    #[cfg_attr(feature = "yaml", serde(rename = "R"))]
-    pub resistance: Option<Matrix<F>>,
-    /// The action of voltages on coils.
-    #[cfg_attr(feature = "yaml", serde(rename = "B"))]
-    pub voltages: Option<Matrix<F>>,
-    /// The declared name of the speed: an output, an input or an unmeasured signal.
-    pub speed: Option<Spanned<String>>,
-    /// The inertia of the mass.
-    pub inertia: Option<F>,
-    /// The friction coefficient.
-    pub friction: Option<F>,
-    /// The constant external force.
-    pub load: Option<F>,
-}
-
-#[cfg(feature = "yaml")]
-impl<F> Matrix<F> {
-    /// The matrix of the changed entries.
-    fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Matrix<G> {
-        let rows = self.rows.into_iter().map(|row| row.into_iter().map(&mut *change).collect()).collect();
-        Matrix { span: self.span, depth: self.depth, rows }
+section! {
+    /// `x' = A11 x + A12 y + B1 u`, `y' = A21 x + A22 y + B2 u`; a block that is absent is zero. With `T1` and `T2` the
+    /// author chooses the transform.
+    pub struct Lti {
+        a11 as "A11": Option<Matrix>, "A11: [[0, 1], [-1, 0]]", "From x to the rate of x", required();
+        a12 as "A12": Option<Matrix>, "A12: [[0], [1]]", "From y to the rate of x; zero if left out";
+        a21 as "A21": Option<Matrix>, "A21: [[1, 0]]", "From x to the rate of y", required();
+        a22 as "A22": Option<Matrix>, "A22: [[-1]]", "From y to the rate of y; zero if left out";
+        b1 as "B1": Option<Matrix>, "B1: [[0], [1]]", "From the inputs to the rate of x; zero if left out";
+        b2 as "B2": Option<Matrix>, "B2: [[1]]", "From the inputs to the rate of y; zero if left out";
+        t1 as "T1": Option<Matrix>, "T1: [[1, 0], [0, 1]]",
+            "The factor of x in the transform T1 x + T2 y; derived if left out";
+        t2 as "T2": Option<Matrix>, "T2: [[0], [0]]", "The factor of y in the transform T1 x + T2 y; derived with T1";
     }
 }
 
-#[cfg(feature = "yaml")]
-impl<F> Lti<F> {
-    pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Lti<G> {
-        let mut matrix = |block: Option<Matrix<F>>| block.map(|block| block.map(change));
-        Lti {
-            a11: matrix(self.a11),
-            a12: matrix(self.a12),
-            a21: matrix(self.a21),
-            a22: matrix(self.a22),
-            b1: matrix(self.b1),
-            b2: matrix(self.b2),
-            t1: matrix(self.t1),
-            t2: matrix(self.t2),
-        }
+section! {
+    /// The energy `p' M^-1 p / 2 + V(q)` with forces `G(q) u`, and a frame `T(q)`: the momenta are x, the positions y.
+    pub struct Mechanical {
+        m as "M": Option<Matrix>, "M: [[m, 0], [0, m*r^2]]", "The inertia matrix, a function of the positions",
+            required();
+        v as "V": Option<Formula>, "V: m*g*r*cos(q)",
+            "The potential energy, a function of the positions; zero if left out";
+        g as "G": Option<Matrix>, "G: [[1], [0]]",
+            "The input matrix, from the inputs to the rates of the momenta; zero if left out";
+        t as "T": Option<Matrix>, "T: [[1, 0], [0, 1]]",
+            "The frame T(q) of the transform z = T(q)' p; if left out, the transform is searched for";
     }
 }
 
-#[cfg(feature = "yaml")]
-impl<F> Mechanical<F> {
-    pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Mechanical<G> {
-        Mechanical {
-            m: self.m.map(|m| m.map(change)),
-            v: self.v.map(&mut *change),
-            g: self.g.map(|g| g.map(change)),
-            t: self.t.map(|t| t.map(change)),
-        }
-    }
-}
-
-#[cfg(feature = "yaml")]
-impl<F> Electromechanical<F> {
-    pub(super) fn map<G>(self, change: &mut impl FnMut(F) -> G) -> Electromechanical<G> {
-        Electromechanical {
-            coils: self.coils,
-            inductance: self.inductance.map(|m| m.map(change)),
-            mu: self.mu.map(|m| m.map(change)),
-            resistance: self.resistance.map(|m| m.map(change)),
-            voltages: self.voltages.map(|m| m.map(change)),
-            speed: self.speed,
-            inertia: self.inertia.map(&mut *change),
-            friction: self.friction.map(&mut *change),
-            load: self.load.map(&mut *change),
-        }
+section! {
+    /// The fluxes `L(q) i + mu(q)` with `d/dt(..) = -R i + B u`: the position is x, the currents are the first outputs y.
+    pub struct Electromechanical {
+        coils: Number, "coils: 2", "The number of coils";
+        inductance as "L": Option<Matrix>, "L: [[L, 0], [0, L]]", "The inductance matrix, a function of the position",
+            required();
+        mu: Option<Matrix>, "mu: [lambda_m*cos(q), lambda_m*sin(q)]",
+            "The flux of permanent magnets in each coil, a function of the position; zero if left out";
+        resistance as "R": Option<Matrix>, "R: [R, R]", "The resistance matrix", required();
+        voltages as "B": Option<Matrix>, "B: [[1, 0], [0, 1]]",
+            "From the voltages to the coils; the identity if left out";
+        speed: Text, "speed: omega", "The declared name of the speed: an output, an input, or a signal of w",
+            required();
+        inertia: Option<Formula>, "inertia: j", "The inertia of the mass";
+        friction: Option<Formula>, "friction: f", "The friction coefficient";
+        load: Option<Formula>, "load: m*g", "The constant external force";
     }
 }
 
@@ -191,6 +109,6 @@ impl Class {
 }
 
 /// The entries of the matrices that are given.
-fn entries<const N: usize>(matrices: [&Option<Matrix<Formula>>; N]) -> impl Iterator<Item = &Formula> {
+fn entries<const N: usize>(matrices: [&Option<Matrix>; N]) -> impl Iterator<Item = &Formula> {
     matrices.into_iter().flatten().flat_map(|matrix| matrix.rows.iter().flatten())
 }

@@ -1,16 +1,12 @@
 //! Delays of sensors, as they are written.
 
-#[cfg(feature = "yaml")]
-use serde::Deserialize;
-
 use super::formula::Decimal;
+use super::section::Value;
 use super::spanned::{Entry, Spanned};
 use crate::source::Span;
 
 /// Delays of sensors in seconds: one for all outputs, or some outputs' own; no delay where there is neither.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
-#[cfg_attr(feature = "yaml", serde(default, deny_unknown_fields))]
 pub struct Delay {
     /// The delay of all outputs.
     pub all: Option<Spanned<Decimal>>,
@@ -34,5 +30,15 @@ impl Delay {
     /// All that are written.
     pub fn written(&self) -> impl Iterator<Item = &Spanned<Decimal>> {
         self.all.iter().chain(self.each.iter().map(|entry| &entry.value))
+    }
+}
+
+impl Value for Delay {
+    fn names(&self) -> Vec<&Spanned<String>> {
+        self.each.names()
+    }
+
+    fn numbers(&self) -> Vec<&Spanned<Decimal>> {
+        self.written().collect()
     }
 }

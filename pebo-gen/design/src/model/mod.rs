@@ -8,6 +8,7 @@
 //! The passes: `yaml` reads text, [`rust`] reads tokens, and [`check()`] checks the declarations of either.
 
 mod check;
+mod choice;
 pub mod class;
 mod definitions;
 mod delay;
@@ -16,6 +17,8 @@ mod names;
 mod observer;
 mod recording;
 pub mod rust;
+mod section;
+mod simulation;
 mod spanned;
 #[cfg(feature = "yaml")]
 mod time;
@@ -32,12 +35,11 @@ pub use delay::Delay;
 pub use formula::{Comparison, Decimal, Formula, Operator, Relation, Term};
 pub(crate) use names::derivative_of;
 pub use names::unknown_name;
-pub use observer::{Bounds, Estimator, Form, Hold, Observer, Rebase};
+pub use observer::{Bounds, Estimator, Form, Hold, Observer, Rebase, Within};
 pub use recording::Recording;
+pub use simulation::{Baseline, Equations, Kalman, Luenberger, Panel, Piece, Scale, Simulation};
 pub use spanned::{Entry, Spanned};
-pub use written::{
-    Baseline, CascadeClass, Equations, Kalman, Luenberger, Model, Panel, Piece, RegressionForm, Scale, Simulation,
-};
+pub use written::{CascadeClass, Model, RegressionForm};
 
 #[cfg(feature = "yaml")]
 use crate::source::{Diagnostic, Diagnostics, Source};

@@ -1,7 +1,10 @@
 //! The section `recording`: the meaning of the columns of recorded data.
 
 use super::formula::Formula;
+use super::section::{Names, Row, Value};
 use super::spanned::Entry;
+#[cfg(feature = "yaml")]
+use super::yaml::{Key, Shape};
 use crate::source::Span;
 
 /// Formulas over the columns of a recording and the parameters. A signal that has none is the column of its own name.
@@ -21,6 +24,18 @@ impl Recording {
 
     /// The name of the period.
     pub const STEP: &str = "step";
+
+    /// The keys besides signals.
+    #[cfg(feature = "yaml")]
+    pub(super) const KEYS: &'static [Key] = &[
+        Key::new(Self::T, Shape::Formula, "t: time/1000", "When each row was recorded, in seconds"),
+        Key::new(
+            Self::STEP,
+            Shape::Formula,
+            "step: 1e-5",
+            "The time from row to row in seconds, in parameters, where the rows have no time",
+        ),
+    ];
 
     /// The section with these entries, in any order.
     #[cfg(feature = "yaml")]
@@ -49,5 +64,11 @@ impl Recording {
     /// Its first entry.
     pub fn span(&self) -> Option<Span> {
         self.entries().map(|entry| entry.name.span).min()
+    }
+}
+
+impl Value for Recording {
+    fn rows(&self) -> Vec<Row<'_>> {
+        vec![Row::new("recording", &self.signals).of(Names::Signal)]
     }
 }

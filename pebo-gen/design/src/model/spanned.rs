@@ -1,13 +1,9 @@
 //! Values with their spans.
 
-#[cfg(feature = "yaml")]
-use serde::Deserialize;
-
 use crate::source::Span;
 
 /// A value and its span.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
@@ -17,7 +13,6 @@ pub struct Spanned<T> {
 
 /// A named value: `name: value` in a map.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "yaml", derive(Deserialize))]
 pub struct Entry<T> {
     /// The name.
     pub name: Spanned<String>,

@@ -3,7 +3,7 @@
 //! In: the section as written, the sizes of the regression, and the reading of numbers: exactly for code, rounded for a
 //! run.
 
-use crate::model::{self, Bounds, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
+use crate::model::{self, Decimal, Estimator as Name, Hold, Model, Observer, Spanned};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 
 /// Settings with which an observer can be built.
@@ -251,8 +251,8 @@ impl<N: Clone + PartialOrd> Settings<N> {
     ) -> Option<Self> {
         let mut section = Section { written, unknowns, read, problems };
         let estimator = section.estimator();
-        let bounds = section.bounds(&written.bounds, unknowns, "unknown");
-        let within = section.bounds(&written.within, states, "recovered state");
+        let bounds = section.bounds([&written.bounds.lower, &written.bounds.upper], unknowns, "unknown");
+        let within = section.bounds([&written.within.lower, &written.within.upper], states, "recovered state");
         let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
         let operator = match (&written.window, &written.filter) {
             (Some(window), _) => Operator::Window(section.number(window)?),
@@ -311,7 +311,7 @@ impl<N: Clone + PartialOrd> Frame<N> {
         let mut section = Section { written, unknowns: coordinates, read, problems };
         let covariance = section.list(&written.covariance, coordinates, "a covariance for each component of phi");
         let noise = section.list(&written.process_noise, coordinates, "process noise for each component of phi");
-        let within = section.bounds(&written.within, states, "recovered state");
+        let within = section.bounds([&written.within.lower, &written.within.upper], states, "recovered state");
         let chi_0 = section.list(&written.extension, coordinates, "a start for each component of phi");
         let rebase = section.rebase().ok()?;
         Some(Self {
@@ -414,7 +414,7 @@ impl<F> Section<'_, F> {
     /// Bounds of so many quantities of a kind.
     fn bounds<N: Clone + PartialOrd>(
         &mut self,
-        written: &Bounds,
+        [below, above]: [&[Spanned<Decimal>]; 2],
         count: usize,
         kind: &str,
     ) -> Option<[Option<Vec<N>>; 2]>
@@ -422,12 +422,11 @@ impl<F> Section<'_, F> {
         F: Fn(&Decimal) -> Option<N>,
     {
         let what = format!("a bound for each {kind}");
-        let lower = self.list(&written.lower, count, &what);
-        let upper = self.list(&written.upper, count, &what);
+        let lower = self.list(below, count, &what);
+        let upper = self.list(above, count, &what);
         let (lower, upper) = (lower.ok()?, upper.ok()?);
         let pairs = lower.iter().flatten().zip(upper.iter().flatten());
         if let Some((crossed, _)) = pairs.enumerate().find(|(_, (lower, upper))| lower > upper) {
-            let (below, above) = (&written.lower, &written.upper);
             let message = format!("no value lies within the bounds of {kind} {}", crossed + 1);
             let (below, above) = (below.get(crossed).or(below.first())?, above.get(crossed).or(above.first())?);
             self.problems.push(

@@ -6,7 +6,7 @@ use std::ops::Range;
 ///
 /// An empty span is a point: where something is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "yaml", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "yaml", derive(serde::Serialize))]
 pub struct Span {
     /// First byte.
     pub start: usize,

@@ -17,7 +17,7 @@ const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The stream that decides about dropped samples.
 pub(crate) const DROPPED: u64 = u64::MAX;
 
-/// The stream of the instants' jitter.
+/// The stream that moves instants from their places.
 pub(crate) const JITTER: u64 = u64::MAX - 1;
 
 /// A normal number of variance 1.

@@ -80,7 +80,7 @@ impl PanelResolver<'_> {
                 Some(unit) => Some(unit.value.clone()),
                 None => unit::same(panel.curves.iter().map(|curve| unit::of(curve, &known))).map(str::to_owned),
             };
-            self.add((&panel.title.value, unit, panel.scale), curves);
+            self.add((&panel.title.value, unit, panel.scale.value), curves);
         }
     }
 

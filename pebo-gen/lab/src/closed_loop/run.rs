@@ -4,8 +4,8 @@
 //! y_0 -> observer -> u_0 -> plant over one step, u_0 held -> y_1, u_0 -> observer -> u_1 -> ..
 //! ```
 //!
-//! Between y and the observers are the sensors, whose samples may be late, wrong, or missing. With jitter the instants
-//! move at which the loop samples and sets its inputs; observers get the nominal period.
+//! Between y and the observers are the sensors, whose samples may be late, wrong, or missing. The instants may move
+//! at which the loop samples and sets its inputs; observers get the nominal period.
 
 use std::ops::ControlFlow;
 
@@ -19,7 +19,7 @@ use super::layout::TIME;
 use super::ode::Flow;
 use super::ode::equation::Standstill;
 use super::scenario::{Scenario, ScoredEstimate};
-use super::sensor::{SensorState, instant};
+use super::sensor::SensorState;
 use super::signal::SignalCursor;
 use super::trace::Trace;
 use crate::figure::curve::{Curve, drawn};
@@ -229,8 +229,8 @@ impl<'a> LoopState<'a> {
 
     /// Goes on to this sample, with the inputs held.
     pub(crate) fn advance(&mut self, sample: u64) -> Result<(), Failure> {
-        let Scenario { timing, jitter, seed, .. } = self.scenario;
-        let (from, to) = (self.table[TIME], instant(timing, *jitter, *seed, sample));
+        let Scenario { timing, sensors, seed, .. } = self.scenario;
+        let (from, to) = (self.table[TIME], sensors.instant(timing, *seed, sample));
         if let Err(standstill) = self.flow.advance(&mut self.table, from, to) {
             return Err(self.standstill(standstill));
         }
@@ -242,7 +242,7 @@ impl<'a> LoopState<'a> {
         }
         let arrives = self.measure(sample);
         if let Some(measured_time) = self.scenario.layout.measured_time {
-            // An input holds for an interval, so the time is its mean there. Jitter is not measured.
+            // An input holds for an interval, so the time is its mean there. Nobody measures how far it is from its place.
             self.table[measured_time] = timing.at(sample) - timing.step / 2.0;
         }
         let state = self.scenario.layout.state.clone();

@@ -57,8 +57,6 @@ pub struct Scenario {
     /// The last samples of the sensors.
     pub(crate) measured: Program,
     pub(crate) sensors: Sensors,
-    /// The largest jitter of instants, in steps.
-    pub(crate) jitter: f64,
     /// The seed of the random numbers.
     pub(crate) seed: u64,
     /// The differences of plant and sensors from the model: keys of the section.
@@ -287,7 +285,6 @@ impl Resolution<'_> {
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
             measured: compile(&measured)?,
             sensors,
-            jitter: simulation.jitter.as_ref().map_or(0.0, |share| share.value.to_f64()),
             departures: simulation.departures(&names.model.observer.delay),
             moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),

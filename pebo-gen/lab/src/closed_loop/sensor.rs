@@ -29,6 +29,8 @@ pub(crate) struct Sensors {
     each: Vec<Sensor>,
     /// The probability that a sample is dropped.
     dropped: f64,
+    /// The largest distance of an instant from its nominal time, in steps.
+    jitter: f64,
 }
 
 /// The imperfections of one sensor.
@@ -51,8 +53,10 @@ impl Sensors {
         (timing, span): (&Timing, Span),
         problems: &mut Diagnostics,
     ) -> Self {
+        let share = |number: &Option<Spanned<Decimal>>| number.as_ref().map_or(0.0, |share| share.value.to_f64());
+        let perfect = Self { jitter: share(&simulation.jitter), ..Self::default() };
         if !simulation.is_imperfect() {
-            return Self::default();
+            return perfect;
         }
         if let Some(delay) = simulation.delay.written().find(|delay| delay.value.to_f64() > LONGEST * timing.step) {
             let place = if delay.span == Span::NOWHERE { span } else { delay.span };
@@ -60,7 +64,7 @@ impl Sensors {
             problems.push(Diagnostic::error(Code::SimulationUnsupported, place, message).help(format!(
                 "the simulator has room for {LONGEST:.0e} samples on their way: shorten the delay, or choose a longer step"
             )));
-            return Self::default();
+            return perfect;
         }
         let sensor = |output: String| {
             let of = |entries| number(entries, &output);
@@ -73,8 +77,7 @@ impl Sensors {
             }
         };
         let outputs = plant.y.iter().map(|output| plant.arena.name(output.symbol));
-        let dropped = simulation.dropped.as_ref().map_or(0.0, |share| share.value.to_f64());
-        Self { each: outputs.map(sensor).collect(), dropped }
+        Self { each: outputs.map(sensor).collect(), dropped: share(&simulation.dropped), ..perfect }
     }
 
     /// The sensors before their first sample, with this seed. Instants closer than `slack` are one.
@@ -86,12 +89,6 @@ impl Sensors {
 /// The entry of an output; 0 if there is none.
 fn number(entries: &[Entry<Spanned<Decimal>>], output: &str) -> f64 {
     entries.iter().find(|entry| entry.name.value == output).map_or(0.0, |entry| entry.value.value.to_f64())
-}
-
-/// The standard deviation of an output's samples, by noise and by rounding to the nearest multiple of a step, whose
-/// error is uniformly distributed.
-pub(crate) fn deviation(simulation: &Simulation, output: &str) -> f64 {
-    number(&simulation.noise, output).hypot(number(&simulation.quantisation, output) / 12.0_f64.sqrt())
 }
 
 /// The state of the sensors in a run.
@@ -123,6 +120,16 @@ impl SensorState<'_> {
 }
 
 impl Sensors {
+    /// The instant of a sample, with jitter. The first and the last are exact, as a run begins and ends there.
+    pub(crate) fn instant(&self, timing: &Timing, seed: u64, sample: u64) -> f64 {
+        let place = timing.at(sample);
+        if self.jitter > 0.0 && sample > 0 && sample < timing.samples {
+            place + timing.step * self.jitter * (2.0 * even(seed, JITTER, sample) - 1.0)
+        } else {
+            place
+        }
+    }
+
     /// Makes NaN of the outputs whose sensors have no sample at this instant.
     pub(crate) fn leave_out(&self, sample: u64, outputs: &mut [f64]) {
         for (sensor, output) in self.each.iter().zip(outputs) {
@@ -156,15 +163,5 @@ fn delayed(past: &mut VecDeque<(f64, f64)>, newest: (f64, f64), wanted: f64, sla
             first.1 + (second.1 - first.1) * ((wanted - first.0) / (second.0 - first.0))
         }
         _ => first.1,
-    }
-}
-
-/// The instant of a sample, with jitter. The first and the last are exact, as a run begins and ends there.
-pub(crate) fn instant(timing: &Timing, jitter: f64, seed: u64, sample: u64) -> f64 {
-    let place = timing.at(sample);
-    if jitter > 0.0 && sample > 0 && sample < timing.samples {
-        place + timing.step * jitter * (2.0 * even(seed, JITTER, sample) - 1.0)
-    } else {
-        place
     }
 }

@@ -67,13 +67,7 @@ impl Deviations {
         };
         let magnitude =
             |symbol: Symbol| point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT);
-        let simulated = |symbol: Symbol| {
-            let simulation = model.simulation.as_ref()?;
-            let noise = of(&simulation.noise, symbol).unwrap_or_default();
-            // The error of rounding to the nearest multiple of a step is uniformly distributed.
-            let rounding = of(&simulation.quantisation, symbol).unwrap_or_default() / 12.0_f64.sqrt();
-            Some(noise.hypot(rounding)).filter(|deviation| *deviation > 0.0)
-        };
+        let simulated = |symbol: Symbol| model.simulation.as_ref()?.deviation(&arena.name(symbol));
         // A plant that starts at rest has its rates later.
         let along: Vec<Point> = match shown.course.as_slice() {
             [] => vec![point.clone()],

@@ -12,7 +12,6 @@ const EXPONENT_LIMIT: i64 = 308;
 ///
 /// It is exact: `0.1` is one tenth. Holds: at most 400 digits, exponent between -308 and 308.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "yaml", derive(serde::Deserialize), serde(try_from = "String"))]
 pub struct Decimal {
     text: String,
 }
@@ -76,14 +75,6 @@ impl Decimal {
     /// The nearest floating-point number.
     pub fn to_f64(&self) -> f64 {
         self.text.parse().unwrap_or(f64::NAN)
-    }
-}
-
-impl TryFrom<String> for Decimal {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        Self::parse(&text, Span::default()).map_err(|diagnostic| diagnostic.message.into())
     }
 }
 

@@ -8,33 +8,18 @@ use pebo_cas::Rational;
 use pebo_cas::graph::function::pieces::{Pieces, suffix, through};
 
 use super::Decimal;
+use crate::model::choice::choices;
 use crate::model::spanned::Spanned;
 
-/// A function between points.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Interpolation {
-    /// Monotone cubics.
-    #[default]
-    Cubic,
-    /// Straight lines.
-    Linear,
-}
-
-impl Interpolation {
-    /// The names in a model.
-    pub const NAMES: &[&str] = &["cubic", "linear"];
-
-    /// The interpolation of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Cubic, Self::Linear].into_iter().find(|kind| kind.name() == name)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Cubic => Self::NAMES[0],
-            Self::Linear => Self::NAMES[1],
-        }
+choices! {
+    /// A function between points.
+    #[derive(Default)]
+    pub enum Interpolation {
+        /// Monotone cubics.
+        #[default]
+        Cubic = "cubic",
+        /// Straight lines.
+        Linear = "linear",
     }
 }
 

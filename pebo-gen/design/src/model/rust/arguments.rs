@@ -12,6 +12,7 @@ use syn::{Expr, Lit, Meta, MetaList, MetaNameValue, Token};
 
 use super::refusal::unsupported;
 use super::spans::TokenSpans;
+use crate::model::choice::Choice;
 use crate::model::formula::Relation;
 use crate::model::spanned::{Entry, Spanned};
 use crate::model::written::{CascadeClass, RegressionForm};
@@ -73,10 +74,10 @@ impl Arguments {
             ("title", Meta::NameValue(pair)) => self.title = Some(text(pair, spans)?),
             ("reference", Meta::NameValue(pair)) => self.reference = Some(text(pair, spans)?),
             ("class", Meta::NameValue(pair)) => {
-                self.class = Some(choice(&text(pair, spans)?, CascadeClass::from_name, CascadeClass::NAMES)?);
+                self.class = Some(choice(&text(pair, spans)?)?);
             }
             ("regression", Meta::NameValue(pair)) => {
-                self.regression = Some(choice(&text(pair, spans)?, RegressionForm::from_name, RegressionForm::NAMES)?);
+                self.regression = Some(choice(&text(pair, spans)?)?);
             }
             ("assume", Meta::List(list)) => {
                 for part in split(list.tokens.clone(), is_comma) {
@@ -148,15 +149,11 @@ fn text(pair: &MetaNameValue, spans: &mut TokenSpans) -> Result<Spanned<String>,
     }
 }
 
-fn choice<T>(
-    name: &Spanned<String>,
-    from_name: impl Fn(&str) -> Option<T>,
-    names: &[&str],
-) -> Result<Spanned<T>, Diagnostic> {
-    let Some(value) = from_name(&name.value) else {
+fn choice<T: Choice>(name: &Spanned<String>) -> Result<Spanned<T>, Diagnostic> {
+    let Some(value) = T::of_word(&name.value) else {
         let message = format!("{} is none of the choices", quoted(&name.value));
         return Err(Diagnostic::error(Code::WrongChoice, name.span, message)
-            .help(format!("write one of {}", listed(names.iter().copied()))));
+            .help(format!("write one of {}", listed(T::WORDS.iter().copied()))));
     };
     Ok(Spanned { value, span: name.span })
 }

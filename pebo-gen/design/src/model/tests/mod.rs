@@ -106,9 +106,9 @@ fn every_key_is_read() {
     assert_eq!(simulation.plant[0].value.len(), 2);
     let [copy, kalman, luenberger] = simulation.baselines.as_slice() else { panic!("three baselines") };
     assert_eq!(copy.value.equations().map(|equations| equations.state.len()), Some(1));
-    assert!(matches!(&kalman.value, Baseline::Kalman(filter) if !filter.extended && filter.start.len() == 1));
+    assert!(matches!(&kalman.value, Baseline::Kalman(filter) if filter.start.len() == 1));
     assert!(matches!(&luenberger.value, Baseline::Luenberger(observer) if observer.poles.len() == 2));
-    let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale).collect();
+    let scales: Vec<Scale> = simulation.panels.iter().map(|panel| panel.scale.value).collect();
     assert_eq!(scales, [Scale::Log, Scale::Linear]);
     let recording = model.recording.expect("it is there");
     assert!(recording.t.is_some() && recording.step.is_none());

@@ -1,13 +1,14 @@
 //! The table of keys as a JSON schema, for editors that complete and check model files.
 //!
-//! In: the table of `schema`, by which the reader checks files. Out: JSON schema, draft 2020-12. It describes keys and
+//! In: the table of keys, by which the reader checks files. Out: JSON schema, draft 2020-12. It describes keys and
 //! the shapes of values; the reader checks formulas and names.
 
 use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::schema::{Key, MODEL, Role, Shape};
+use super::document::FILE;
+use super::key::{Key, Role, Shape};
 
 /// A schema; an absent field admits everything.
 #[derive(Serialize, Default)]
@@ -60,13 +61,13 @@ impl Admission {
 
 /// The schema of a model file, as text.
 pub(super) fn text() -> String {
-    let mut model = record(MODEL);
+    let mut model = record(FILE);
     model.dialect = Some("https://json-schema.org/draft/2020-12/schema");
     model.title = Some("A model file of pebo-gen");
-    let classes: Vec<&Key> = MODEL.iter().filter(|key| key.role == Role::Class).collect();
+    let classes: Vec<&Key> = FILE.iter().filter(|key| key.role == Role::Class).collect();
     // A class excludes the keys that it gives, and other classes.
     let given = |class: &Key| {
-        let barred = MODEL.iter().filter(|key| match key.role {
+        let barred = FILE.iter().filter(|key| match key.role {
             Role::Class => key.name != class.name,
             Role::RequiredOrByClass | Role::OptionalOrByClass | Role::SearchedOrByClass => true,
             Role::Required | Role::Optional => false,
@@ -75,7 +76,7 @@ pub(super) fn text() -> String {
     };
     model.dependent = classes.iter().map(|class| (class.name, given(class))).collect();
     // Without a class these keys are required.
-    let by_hand = MODEL.iter().filter(|key| key.role == Role::RequiredOrByClass).map(|key| key.name).collect();
+    let by_hand = FILE.iter().filter(|key| key.role == Role::RequiredOrByClass).map(|key| key.name).collect();
     let alternatives = std::iter::once(by_hand).chain(classes.iter().map(|class| vec![class.name]));
     model.any = alternatives.map(|required| Node { required, ..Node::default() }).collect();
     let mut text = serde_json::to_string_pretty(&model).unwrap_or_default();

@@ -3,7 +3,8 @@
 //! In: the tree, and the settings behind the text in its source. Out: the tree as if the file said so, with the spans
 //! of the call. Values are not checked here: the schema checks the whole tree.
 
-use super::schema::{MODEL, Shape};
+use super::document::FILE;
+use super::key::Shape;
 use super::tree::{Content, Key, Node, grow_part};
 use crate::source::{Code, Diagnostic, Diagnostics, Source, Span, listed, nearest, quoted};
 
@@ -59,7 +60,7 @@ fn resolved(root: &Node, mut path: Vec<Key>) -> Result<Vec<Key>, Diagnostic> {
     let parameters = names(child(root, "parameters"));
     if path.len() == 1 && parameters.contains(&first.text.as_str()) {
         path.insert(0, Key { span: first.span, text: "parameters".to_owned() });
-    } else if !MODEL.iter().any(|key| key.name == first.text) {
+    } else if !FILE.iter().any(|key| key.name == first.text) {
         return Err(unknown(root, &path, &parameters));
     }
     let texts: Vec<&str> = path.iter().map(|key| key.text.as_str()).collect();
@@ -85,7 +86,7 @@ fn unknown(root: &Node, path: &[Key], parameters: &[&str]) -> Diagnostic {
     let whole = whole.join(".");
     let message = format!("{} is no parameter of the model and no key of its file", quoted(&whole));
     let diagnostic = Diagnostic::error(Code::UnknownName, span, message);
-    let mut sections = MODEL.iter().filter(|section| ["observer", "simulation"].contains(&section.name));
+    let mut sections = FILE.iter().filter(|section| ["observer", "simulation"].contains(&section.name));
     let section = sections.find(|section| match section.shape {
         Shape::Record(keys) => keys.iter().any(|key| key.name == name),
         _ => false,
@@ -99,7 +100,7 @@ fn unknown(root: &Node, path: &[Key], parameters: &[&str]) -> Diagnostic {
     if path.len() == 1 {
         return one_of(diagnostic, name, parameters);
     }
-    one_of(diagnostic, name, &MODEL.iter().map(|key| key.name).collect::<Vec<_>>())
+    one_of(diagnostic, name, &FILE.iter().map(|key| key.name).collect::<Vec<_>>())
 }
 
 fn one_of(diagnostic: Diagnostic, name: &str, names: &[&str]) -> Diagnostic {

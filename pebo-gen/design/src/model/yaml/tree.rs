@@ -18,9 +18,9 @@ const NODE_LIMIT: usize = 20_000;
 
 /// A value and its span.
 #[derive(Debug)]
-pub(super) struct Node {
-    pub(super) span: Span,
-    pub(super) content: Content,
+pub(crate) struct Node {
+    pub(crate) span: Span,
+    pub(crate) content: Content,
 }
 
 /// The next thing that a map expects.
@@ -35,7 +35,7 @@ enum Pending {
 
 /// The content of a node.
 #[derive(Debug)]
-pub(super) enum Content {
+pub(crate) enum Content {
     /// Nothing, or a plain `null` or `~`.
     Null,
     Scalar(String),
@@ -47,7 +47,7 @@ pub(super) enum Content {
 
 /// A key of a map and its span.
 #[derive(Debug)]
-pub(super) struct Key {
+pub(crate) struct Key {
     pub(super) span: Span,
     pub(super) text: String,
 }

@@ -33,14 +33,14 @@ pub struct Electromechanical {
 }
 
 /// The number of coils: of outputs that are not the speed.
-pub(super) fn coils(class: &WrittenClass<WrittenFormula>, model: &Model) -> usize {
+pub(super) fn coils(class: &WrittenClass, model: &Model) -> usize {
     let is_speed = |name: &str| class.speed.as_ref().is_some_and(|speed| speed.value == name);
     model.y.iter().filter(|output| !is_speed(&output.value)).count()
 }
 
 pub(super) fn expand(
     context: &ClassContext<'_>,
-    written: &WrittenClass<WrittenFormula>,
+    written: &WrittenClass,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
@@ -140,7 +140,7 @@ impl ElectromechanicalEntries {
     /// Reads them for so many coils; nothing if there was a mistake, which is reported.
     fn read(
         context: &ClassContext<'_>,
-        written: &WrittenClass<WrittenFormula>,
+        written: &WrittenClass,
         names: &Names<'_>,
         (position, speed, n): (Symbol, Symbol, usize),
         problems: &mut Diagnostics,
@@ -207,7 +207,7 @@ fn speed(
 }
 
 /// Checks that the written number of coils is that of the currents.
-fn counted(written: &WrittenClass<WrittenFormula>, n: usize) -> Result<(), Diagnostic> {
+fn counted(written: &WrittenClass, n: usize) -> Result<(), Diagnostic> {
     let Some(coils) = &written.coils else { return Ok(()) };
     let found = pebo_cas::Rational::from_decimal(coils.value.text()).ok();
     if found.and_then(|value| value.to_i64()) == i64::try_from(n).ok() {
@@ -218,11 +218,7 @@ fn counted(written: &WrittenClass<WrittenFormula>, n: usize) -> Result<(), Diagn
 }
 
 /// The span of a component of the flux: the magnet's entry if there is one, else the row of L.
-fn flux_span(
-    l: &crate::model::Matrix<WrittenFormula>,
-    mu: Option<&crate::model::Matrix<WrittenFormula>>,
-    k: usize,
-) -> Span {
+fn flux_span(l: &crate::model::Matrix, mu: Option<&crate::model::Matrix>, k: usize) -> Span {
     let entry = mu.and_then(|mu| if mu.depth == 2 { mu.rows.get(k)?.first() } else { mu.rows[0].get(k) });
     let row = l.rows.get(k).filter(|_| l.depth == 2);
     match (entry, row) {

@@ -5,7 +5,7 @@
 //! problem is to solve `A11 + T2 A21 = 0`: the rows of A11 have to be combinations of those of A21 (Ortega et al. 2015,
 //! Section 4, eq. 19).
 
-use crate::model::{Formula as WrittenFormula, Lti};
+use crate::model::Lti;
 use crate::plant::Matrix;
 use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
@@ -45,7 +45,7 @@ const MOST_BY_MINORS: usize = 6;
 
 pub(super) fn expand(
     context: &ClassContext<'_>,
-    written: &Lti<WrittenFormula>,
+    written: &Lti,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
@@ -121,7 +121,7 @@ pub(super) fn expand(
         let driven = if u.is_empty() { arena.zero() } else { dot(arena, &c.rows()[row], &u) };
         arena.sum([dot(arena, &a.rows()[row], &x), dot(arena, &b.rows()[row], &y), driven])
     };
-    let span = |matrix: &crate::model::Matrix<WrittenFormula>, row: usize| match matrix.rows.get(row) {
+    let span = |matrix: &crate::model::Matrix, row: usize| match matrix.rows.get(row) {
         Some(entries) => entries[0].span.to(entries[entries.len() - 1].span),
         None => matrix.span,
     };

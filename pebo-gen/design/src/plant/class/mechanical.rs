@@ -88,7 +88,7 @@ fn inertial(arena: &Arena, inertia: &Matrix, q: Symbol, v: &[Expr]) -> Expr {
 
 pub(super) fn expand(
     context: &ClassContext<'_>,
-    written: &WrittenClass<WrittenFormula>,
+    written: &WrittenClass,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<Expansion, Stop> {
@@ -198,7 +198,7 @@ struct MechanicalEntries {
 
 fn read(
     context: &ClassContext<'_>,
-    written: &WrittenClass<WrittenFormula>,
+    written: &WrittenClass,
     names: &Names<'_>,
     problems: &mut Diagnostics,
 ) -> Result<MechanicalEntries, Stop> {
@@ -312,7 +312,7 @@ fn shorter(arena: &Arena, [first, second]: [Expr; 2]) -> Expr {
 }
 
 /// The span of T's column for a component of z: its first entry that is not zero.
-fn column(written: &crate::model::Matrix<WrittenFormula>, index: usize) -> Span {
+fn column(written: &crate::model::Matrix, index: usize) -> Span {
     let entries = written.rows.iter().filter_map(|row| row.get(index));
     let is_zero = |f: &&WrittenFormula| matches!(&f.term, crate::model::Term::Number(n) if n.to_f64() == 0.0);
     if written.depth < 2 {

@@ -28,7 +28,7 @@ pub(super) struct Size {
 #[derive(Clone, Copy)]
 pub(super) struct WrittenMatrix<'a> {
     pub(super) name: &'static str,
-    pub(super) matrix: &'a Option<model::Matrix<model::Formula>>,
+    pub(super) matrix: &'a Option<model::Matrix>,
 }
 
 impl ClassContext<'_> {
@@ -105,7 +105,7 @@ impl ClassContext<'_> {
     }
 }
 
-fn misfit(name: &str, matrix: &model::Matrix<model::Formula>, size: Size) -> Diagnostic {
+fn misfit(name: &str, matrix: &model::Matrix, size: Size) -> Diagnostic {
     let found = match matrix.depth {
         0 => "a single formula".to_owned(),
         1 => format!("a list of {}", matrix.rows[0].len()),

@@ -44,7 +44,7 @@ impl ResolvedBaseline {
         let name = entry.name.value.as_str();
         let (ResolvedEquations { rates, start, estimates }, sampled) = match &entry.value {
             Baseline::Equations(written) => (equations::resolve(names, (name, written), problems), None),
-            Baseline::Kalman(_) | Baseline::Luenberger(_) => {
+            Baseline::Kalman(_) | Baseline::Extended(_) | Baseline::Luenberger(_) => {
                 let estimates = baseline_estimates(names.plant, entry).into_iter();
                 let estimates = estimates.map(|(state, symbol)| (state, names.plant.arena.of_symbol(symbol))).collect();
                 (

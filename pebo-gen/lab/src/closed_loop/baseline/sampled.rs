@@ -8,7 +8,6 @@ use std::fmt;
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
 use crate::closed_loop::scope::{Names, Sight, View};
-use crate::closed_loop::sensor;
 use crate::observe::design::program;
 use crate::observe::sizes::{LARGEST, pad};
 use crate::settings::Value;
@@ -59,7 +58,16 @@ impl NamedBaseline {
         let plant = LinearisedPlant::resolve(names, place, problems)?;
         let (rule, initial) = match &entry.value {
             Baseline::Equations(_) => return None,
-            Baseline::Kalman(written) => {
+            Baseline::Kalman(_) if !plant.is_affine => {
+                let (name, span) = place;
+                let message = format!("`{name}` needs a plant that is affine in its states and outputs");
+                problems.push(
+                    Diagnostic::error(Code::SettingConflict, span, message)
+                        .help("write `ekf` in its place: the extended filter linearises the plant at its estimate"),
+                );
+                return None;
+            }
+            Baseline::Kalman(written) | Baseline::Extended(written) => {
                 (kalman(names, written, (&plant, start_error), place, problems)?, &written.initial)
             }
             Baseline::Luenberger(written) => (luenberger(written, &plant, place, problems)?, &written.initial),
@@ -106,18 +114,10 @@ fn kalman(
     (name, span): (&str, Span),
     problems: &mut Diagnostics,
 ) -> Option<Rule> {
-    if !written.extended && !plant.is_affine {
-        let message = format!("`{name}` needs a plant that is affine in its states and outputs");
-        problems.push(
-            Diagnostic::error(Code::SettingConflict, span, message)
-                .help("write `ekf` in its place: the extended filter linearises the plant at its estimate"),
-        );
-        return None;
-    }
     let arena = &names.plant.arena;
     let mut sensors = Vec::new();
     for output in names.plant.y.iter().map(|output| arena.name(output.symbol)) {
-        let of_noise = || Some(sensor::deviation(names.simulation, &output)).filter(|deviation| *deviation > 0.0);
+        let of_noise = || names.simulation.deviation(&output);
         let of_observer = || number(&names.model.observer.sensors, &output);
         let deviation = number(&written.sensors, &output).or_else(of_noise).or_else(of_observer);
         if deviation.is_none() {

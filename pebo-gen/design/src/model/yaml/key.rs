@@ -1,7 +1,7 @@
-//! The columns of the table of keys: name, obligation, and the shape of the value.
+//! Keys as files are read by them: name, obligation, and the shape of the value.
 
 /// The shape that a value must have.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
     /// Any scalar. Names are texts here: whether they are names is checked where they are declared.
     Text,
@@ -66,25 +66,41 @@ pub(crate) struct Key {
     pub(crate) name: &'static str,
     pub(crate) role: Role,
     pub(crate) shape: Shape,
+    /// True if its formulas may have estimates, as `hat(x)`.
+    pub(crate) hat: bool,
     /// An example.
     pub(crate) example: &'static str,
     /// A description, in a line that editors show.
     pub(crate) about: &'static str,
 }
 
-pub(super) const fn key(
-    role: Role,
-    name: &'static str,
-    shape: Shape,
-    (example, about): (&'static str, &'static str),
-) -> Key {
-    Key { name, role, shape, example, about }
-}
+impl Key {
+    /// A key that may be there.
+    pub(crate) const fn new(name: &'static str, shape: Shape, example: &'static str, about: &'static str) -> Self {
+        Self { name, role: Role::Optional, shape, hat: false, example, about }
+    }
 
-pub(super) const fn required(name: &'static str, shape: Shape, example: &'static str, about: &'static str) -> Key {
-    key(Role::Required, name, shape, (example, about))
-}
+    pub(crate) const fn role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
 
-pub(super) const fn optional(name: &'static str, shape: Shape, example: &'static str, about: &'static str) -> Key {
-    key(Role::Optional, name, shape, (example, about))
+    pub(crate) const fn required(self) -> Self {
+        self.role(Role::Required)
+    }
+
+    pub(crate) const fn hat(self) -> Self {
+        Self { hat: true, ..self }
+    }
+
+    /// A list may also be written as its only item.
+    pub(crate) const fn or_one(self) -> Self {
+        let shape = if let Shape::List(item) = self.shape { Shape::OneOrMore(item) } else { self.shape };
+        Self { shape, ..self }
+    }
+
+    /// A section may also be written as the number under its first key.
+    pub(crate) const fn or_number(self) -> Self {
+        let shape = if let Shape::Record(keys) = self.shape { Shape::NumberOr(keys) } else { self.shape };
+        Self { shape, ..self }
+    }
 }
