@@ -302,8 +302,8 @@ pub fn authors_form(arena: &Arena, written: Expr, forms: &[Expr]) -> Option<Expr
 
 /// True if every domain condition of a form is one of the expression or proved on the domain.
 pub(crate) fn adds_no_conditions(arena: &Arena, domain: &Domain, expr: Expr, form: Expr) -> bool {
-    let own = code_conditions(arena, expr);
-    let mut more = code_conditions(arena, form);
+    let own = code_conditions(arena, &[expr]);
+    let mut more = code_conditions(arena, &[form]);
     more.retain(|ask| !own.contains(ask));
     if more.is_empty() {
         return true;
@@ -318,11 +318,12 @@ pub(crate) fn adds_no_conditions(arena: &Arena, domain: &Domain, expr: Expr, for
     more.into_iter().all(|(part, relation)| there.implies(arena, part, relation))
 }
 
-/// The domain conditions of the emitted code: unlike a proof, code has a value for the sign of 0.
-fn code_conditions(arena: &Arena, expr: Expr) -> Conditions {
+/// The domain conditions of the emitted code: unlike a proof, code has a value for the sign of 0, and for the slope of a
+/// table at a corner.
+pub fn code_conditions(arena: &Arena, formulas: &[Expr]) -> Conditions {
     let mut found = Conditions::new();
-    for part in arena.postorder(&[expr]) {
-        if matches!(arena.node(part), Node::Call(Function::Sign, _)) {
+    for part in arena.postorder(formulas) {
+        if matches!(arena.node(part), Node::Call(Function::Sign | Function::Table, _)) {
             continue;
         }
         for ask in arena.operation_conditions(part, Regularity::Defined) {
@@ -338,7 +339,7 @@ fn code_conditions(arena: &Arena, expr: Expr) -> Conditions {
 /// of `(sqrt(q) - 1)/(q - 1)` and `1/(1 + sqrt(q))` the second, which has a value at q = 1 too.
 pub fn with_fewer_conditions(arena: &Arena, domain: &Domain, expr: Expr, candidates: &[Expr]) -> Expr {
     let unproved = |form: Expr| {
-        let asked = code_conditions(arena, form).into_iter();
+        let asked = code_conditions(arena, &[form]).into_iter();
         asked.filter(|(part, relation)| !domain.implies(arena, *part, *relation)).count()
     };
     let most = unproved(expr);

@@ -6,7 +6,7 @@ pub use crate::plant::CascadeClass as Class;
 use crate::plant::{Plant, RelationForm};
 use crate::source::Diagnostic;
 use pebo_cas::domain::cells::Side;
-use pebo_cas::graph::conditions::Regularity;
+use pebo_cas::forms::tidy::code_conditions;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::advice::remarks::Remarks;
@@ -348,7 +348,7 @@ pub struct Identifiability {
 
 impl Identifiability {
     /// The answer of this kind, without conditions.
-    pub(crate) fn new(kind: Excitation) -> Self {
+    pub fn new(kind: Excitation) -> Self {
         Self {
             kind,
             by_start: Vec::new(),
@@ -499,7 +499,7 @@ impl Derivation {
             estimates.extend(&regression.eta_symbols);
         }
         let domain = self.domain(plant);
-        let mut conditions = arena.domain_conditions(&formulas, Regularity::Defined);
+        let mut conditions = code_conditions(arena, &formulas);
         conditions.retain(|(part, relation)| {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
             free && !domain.implies(arena, *part, *relation)

@@ -1,17 +1,39 @@
-//! Checks the values at which states start.
+//! Resolves the values at which states start.
 //!
-//! In: values in parameters, and the assumptions. Out: a diagnostic for a value at which an assumption fails, as the plant
-//! would start where nothing is claimed.
+//! In: values in parameters, and the assumptions. Out: the values, or a diagnostic for one at which an assumption fails, as
+//! the plant would start where nothing is claimed.
 
 use std::collections::BTreeMap;
 
+use crate::model::Model;
 use crate::source::{Code, Diagnostic, Diagnostics};
 use pebo_cas::{Arena, Expr, Symbol};
 
+use super::formula::lower;
 use super::plant::{Assumption, Formula, Parameter};
+use super::resolve::confined;
+use super::scope::Scope;
+
+/// The states with the values at which they start.
+pub(super) fn starts(
+    arena: &Arena,
+    scope: &Scope,
+    model: &Model,
+    (assumptions, parameters): (&[Assumption], &[Parameter]),
+    problems: &mut Diagnostics,
+) -> Vec<(Symbol, Formula)> {
+    let constants = parameters.iter().map(|parameter| parameter.symbol).collect();
+    let known = problems.all(model.known.iter().map(|entry| {
+        let value = lower(arena, scope, &entry.value)?;
+        let value = confined(arena, value, entry.value.span, &constants, "a value at the start")?;
+        Ok((arena.symbol(&entry.name.value), value))
+    }));
+    check(arena, &known, assumptions, parameters, problems);
+    known
+}
 
 /// Reports values outside the assumed domain.
-pub(super) fn check(
+fn check(
     arena: &Arena,
     known: &[(Symbol, Formula)],
     assumptions: &[Assumption],

@@ -59,11 +59,7 @@ impl Plant {
             confined(&arena, expr, formula.span, allowed, place)
         };
 
-        let assumptions: Vec<Assumption> =
-            problems.all(model.assume.iter().map(|c| compared(&arena, &scope, c))).into_iter().flatten().collect();
-        super::contradiction::find(&arena, &assumptions, &parameters, &mut problems);
-        let assumptions: Vec<Assumption> =
-            assumptions.into_iter().filter(|a| !arena.holds_of_number((a.expr, a.relation))).collect();
+        let assumptions = self::assumptions(&arena, &scope, model, &parameters, &mut problems);
         let domain = assumed(&arena, &assumptions, &parameters);
         let on_states = with(&[&x, &y]);
         let dynamics = match &model.class {
@@ -84,11 +80,7 @@ impl Plant {
         identities.extend(values::identities(&arena, &outputs));
         let time = model.time.and(u.last().copied());
         values::move_along(&arena, &states, &mut outputs, time, &constants);
-        let known = problems.all(model.known.iter().map(|entry| {
-            let value = within(&entry.value, &with(&[]), "a value at the start")?;
-            Ok((arena.symbol(&entry.name.value), value))
-        }));
-        super::known::check(&arena, &known, &assumptions, &parameters, &mut problems);
+        let known = super::known::starts(&arena, &scope, model, (&assumptions, &parameters), &mut problems);
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
             super::period::positive(&arena, &domain, period)?;
@@ -279,6 +271,21 @@ pub(super) fn confined(
             .help(format!("use only {}", names.join(", "))))
         }
     }
+}
+
+/// The assumptions that are no truths about numbers; those that exclude one another are reported.
+fn assumptions(
+    arena: &Arena,
+    scope: &Scope,
+    model: &Model,
+    parameters: &[Parameter],
+    problems: &mut Diagnostics,
+) -> Vec<Assumption> {
+    let written = problems.all(model.assume.iter().map(|chain| compared(arena, scope, chain)));
+    let mut assumptions: Vec<Assumption> = written.into_iter().flatten().collect();
+    super::contradiction::find(arena, &assumptions, parameters, problems);
+    assumptions.retain(|assumption| !arena.holds_of_number((assumption.expr, assumption.relation)));
+    assumptions
 }
 
 /// The inequalities of a chain as comparisons with zero.

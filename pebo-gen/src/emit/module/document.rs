@@ -16,7 +16,7 @@ use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{
     Class, Derivation, Excitation, Fundamental, Origin, Regression, RegressionKind, UnusedOutput,
 };
-use pebo_design::plant::Plant;
+use pebo_design::plant::{Formula, Plant};
 use pebo_design::program::{Cost, StagedPrograms};
 
 /// The documentation of the module.
@@ -238,6 +238,19 @@ fn drift(plant: &Plant, derivation: &Derivation, rebase: bool) -> Vec<String> {
     vec![String::new(), format!("A constant bias makes {integrators} grow without bound. {remedy}")]
 }
 
+/// The part of a line on unknowns that the known start fixes.
+fn by_start(plant: &Plant, derivation: &Derivation) -> String {
+    let arena = &plant.arena;
+    let fixed = derivation.fixed_by_start(plant);
+    if fixed.is_empty() {
+        return String::new();
+    }
+    let start = |(state, value): &(Symbol, Formula)| format!("`{} = {}`", arena.name(*state), arena.print(value.expr));
+    let known: Vec<String> = plant.known.iter().map(start).collect();
+    let fixed = listed(arena, fixed.into_iter());
+    format!("; where the observer starts at {}, {fixed} vanish, which no output corrects later", known.join(" and "))
+}
+
 fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> Vec<String> {
     let arena = &plant.arena;
     let mut lines = section("Proved");
@@ -288,14 +301,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
             }
             Excitation::Never => "- Identifiability: none".to_owned(),
         };
-        if !identifiability.by_start.is_empty() {
-            let known: Vec<String> = plant
-                .known
-                .iter()
-                .map(|(state, value)| format!("`{} = {}`", arena.name(*state), arena.print(value.expr)))
-                .collect();
-            line += &format!("; the observer starts where {}, which no output shows", known.join(" and "));
-        }
+        line += &by_start(plant, derivation);
         if !identifiability.singular_where.is_empty() {
             let conditions: Vec<String> =
                 identifiability.singular_where.iter().map(|condition| format!("`{condition}`")).collect();

@@ -171,14 +171,9 @@ impl Sketch {
                 unused: Vec::new(),
             }),
             identifiability: proved(Identifiability {
-                kind: Excitation::Instant,
-                trajectories: None,
-                gram: None,
                 singular_where: self.singular_where.iter().map(|&text| text.to_owned()).collect(),
                 everywhere_else: true,
-                constants: Vec::new(),
-                positive: Vec::new(),
-                direction: None,
+                ..Identifiability::new(Excitation::Instant)
             }),
             diagnostics: Vec::new(),
             remarks: Remarks::default(),
@@ -214,6 +209,7 @@ impl Sketch {
             phi: self.phi.iter().map(|text| at(text)).collect(),
             phi_left: None,
             identities: Vec::new(),
+            known: Vec::new(),
             angles: Vec::new(),
             units: BTreeMap::new(),
             assumptions: self

@@ -5,6 +5,7 @@ use crate::model::choice::choices;
 choices! {
     /// The estimators of the runtime library.
     #[derive(Default)]
+    #[cfg_attr(feature = "yaml", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
     pub enum Estimator {
         /// The paper's.
         #[default]

@@ -62,13 +62,19 @@ fn different_time_constants_tell_unknowns_apart() {
 fn a_plant_that_moves_may_need_no_input() {
     let square = "x: [x]\ny: [y]\nu: [u]\nf_x: {x: u}\nf_y: {y: x^2}\nphi: [x]";
     let lines = of(square);
-    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert_eq!(
+        lines[0],
+        "with constant inputs the unknowns are identified while the plant moves, with others on almost every trajectory"
+    );
     // The plant rests then, too.
     assert!(lines[1].starts_with("while `u = 0`, only `"), "{lines:?}");
     assert_eq!(lines.len(), 2);
     let turned = "x: [q]\ny: [s]\nu: [v]\nf_x: {q: v}\ng_y: {s: sin(q)}\nphi: [sin(q), cos(q)]\nangles: {q: 2*pi}";
     let lines = of(turned);
-    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert_eq!(
+        lines[0],
+        "with constant inputs the unknowns are identified while the plant moves, with others on almost every trajectory"
+    );
     assert_eq!(lines[1], "while `v = 0`, only `z1` is identified, which determines `q` near almost every value");
     let frame = "x: [a, b]\ny: [y]\nu: [w, u]\nf_x: {a: w*b + u, b: -w*a}\nf_y: {y: a}\nphi: [a, b]";
     assert_eq!(
@@ -85,7 +91,10 @@ fn losses_under_constant_inputs_at_a_value_of_one_or_of_a_parameter_are_listed()
     let wind = "x: [a, k]\ny: [p, q]\nu: [v, r]\nassume: [v > 0]\nf_x: {a: 0, k: 0}\n\
                 f_y: {p: k*v*cos(q) + a, q: r}\nphi: [a, k]";
     let lines = of(wind);
-    assert_eq!(lines[0], "the unknowns are identified while the plant moves, also with constant inputs");
+    assert_eq!(
+        lines[0],
+        "with constant inputs the unknowns are identified while the plant moves, with others on almost every trajectory"
+    );
     assert_eq!(lines[1], "while all inputs are constant and `r = 0`, only `z1 + v*z2*cos(q)` is identified");
     let sum = "parameters: [k, m]\nassume: [k > 0, m > 0, v > 0, w > 0]\nx: [a, b]\ny: [r]\nu: [v, w]\n\
                f_x: {a: -k*a, b: -m*b}\nf_y: {r: v*a + w*b}\nphi: [a, b]";

@@ -35,7 +35,10 @@ impl Trajectories {
                  the plant rests"
             }
             (Some(true), false, true) if has_no_inputs => "the unknowns are identified while the plant moves",
-            (Some(true), false, true) => "the unknowns are identified while the plant moves, also with constant inputs",
+            // A course of the inputs may keep a plant where it hides unknowns, as a current that is controlled does.
+            (Some(true), false, true) => {
+                "with constant inputs the unknowns are identified while the plant moves, with others on almost every trajectory"
+            }
             (Some(true), false, false) if has_no_inputs => "the unknowns are identified on almost every trajectory",
             (Some(true), false, false) => {
                 "the unknowns are identified on almost every trajectory, also with constant inputs"
