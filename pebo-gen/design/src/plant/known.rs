@@ -5,29 +5,22 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::Model;
+use crate::model::{self, Model};
 use crate::source::{Code, Diagnostic, Diagnostics};
 use pebo_cas::{Arena, Expr, Symbol};
 
-use super::formula::lower;
 use super::plant::{Assumption, Formula, Parameter};
-use super::resolve::confined;
-use super::scope::Scope;
 
 /// The states with the values at which they start.
 pub(super) fn starts(
     arena: &Arena,
-    scope: &Scope,
     model: &Model,
     (assumptions, parameters): (&[Assumption], &[Parameter]),
+    constant: impl Fn(&model::Formula) -> Result<Formula, Diagnostic>,
     problems: &mut Diagnostics,
 ) -> Vec<(Symbol, Formula)> {
-    let constants = parameters.iter().map(|parameter| parameter.symbol).collect();
-    let known = problems.all(model.known.iter().map(|entry| {
-        let value = lower(arena, scope, &entry.value)?;
-        let value = confined(arena, value, entry.value.span, &constants, "a value at the start")?;
-        Ok((arena.symbol(&entry.name.value), value))
-    }));
+    let value = |entry: &model::Entry<model::Formula>| Ok((arena.symbol(&entry.name.value), constant(&entry.value)?));
+    let known = problems.all(model.known.iter().map(value));
     check(arena, &known, assumptions, parameters, problems);
     known
 }

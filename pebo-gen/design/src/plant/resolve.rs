@@ -80,7 +80,8 @@ impl Plant {
         identities.extend(values::identities(&arena, &outputs));
         let time = model.time.and(u.last().copied());
         values::move_along(&arena, &states, &mut outputs, time, &constants);
-        let known = super::known::starts(&arena, &scope, model, (&assumptions, &parameters), &mut problems);
+        let constant = |value: &model::Formula| within(value, &with(&[]), "a value at the start");
+        let known = super::known::starts(&arena, model, (&assumptions, &parameters), constant, &mut problems);
         let angles = problems.all(model.angles.iter().map(|entry| {
             let period = within(&entry.value, &with(&[]), "a period")?;
             super::period::positive(&arena, &domain, period)?;
