@@ -13,25 +13,27 @@ use crate::source::{Code, Diagnostic};
 use pebo_cas::linear::rank::full_rank;
 use pebo_cas::{Expr, Symbol};
 
-use super::by_outputs;
 use super::problem::ObservabilityProblem;
 
 type Decision = (Claim<Identifiability>, Vec<Diagnostic>);
 
+/// Decides how the outputs identify the unknowns of a problem.
+type ByOutputs<'a> = &'a dyn Fn(&ObservabilityProblem<'_>, &mut Vec<Diagnostic>) -> Claim<Identifiability>;
+
 /// The decision with the known start; none where that fixes no unknown.
-pub(super) fn decided(problem: &ObservabilityProblem<'_>) -> Option<Decision> {
+pub(super) fn decided(problem: &ObservabilityProblem<'_>, by_outputs: ByOutputs<'_>) -> Option<Decision> {
     let mut fixed = fixed(problem.plant, problem.regression);
     if fixed.is_empty() {
         return None;
     }
-    let mut decision = without(problem, &fixed);
+    let mut decision = without(problem, &fixed, by_outputs);
     // An unknown that the outputs show needs no start.
     for position in fixed.clone() {
         if decision.0.verdict != Verdict::Proved || fixed.len() == 1 {
             break;
         }
         let fewer: Vec<usize> = fixed.iter().copied().filter(|other| *other != position).collect();
-        let other = without(problem, &fewer);
+        let other = without(problem, &fewer, by_outputs);
         if other.0.verdict == Verdict::Proved {
             (fixed, decision) = (fewer, other);
         }
@@ -52,34 +54,33 @@ fn fixed(plant: &Plant, regression: &Regression) -> Vec<usize> {
 }
 
 /// The decision on the other unknowns.
-fn without(problem: &ObservabilityProblem<'_>, fixed: &[usize]) -> Decision {
-    let &ObservabilityProblem { plant, domain, cascade, left_inverse, .. } = problem;
+fn without(problem: &ObservabilityProblem<'_>, fixed: &[usize], by_outputs: ByOutputs<'_>) -> Decision {
+    let plant = problem.plant;
     let rest = problem.regression.without(plant, fixed);
+    let others = ObservabilityProblem { regression: &rest, ..*problem };
     if rest.eta.is_empty() {
         let result = Identifiability { everywhere_else: true, ..Identifiability::new(Excitation::Instant) };
         return (Claim { verdict: Verdict::Proved, result: Some(result) }, Vec::new());
     }
     let mut found = Vec::new();
-    let claim = by_outputs(plant, domain, cascade, &rest, left_inverse, &mut found);
-    if claim.verdict == Verdict::Proved && !is_identified_from_start(problem, &rest) {
+    let claim = by_outputs(&others, &mut found);
+    if claim.verdict == Verdict::Proved && !is_identified_from_start(&others) {
         return (Claim { verdict: Verdict::Undecided, result: None }, vec![undecided(plant)]);
     }
     (claim, found)
 }
 
 /// Tests whether almost every start with the known values identifies the unknowns: at other values more may be shown.
-fn is_identified_from_start(problem: &ObservabilityProblem<'_>, rest: &Regression) -> bool {
-    let &ObservabilityProblem { plant, domain, cascade, left_inverse, .. } = problem;
+fn is_identified_from_start(problem: &ObservabilityProblem<'_>) -> bool {
+    let &ObservabilityProblem { plant, domain, .. } = problem;
     let arena = &plant.arena;
     let mut start: BTreeMap<Symbol, Expr> = plant.known.iter().map(|(state, value)| (*state, value.expr)).collect();
     for (component, value) in plant.known_components() {
         start.extend([(plant.chi[component], value), (plant.xi[component], value), (plant.z[component], value)]);
     }
-    let Ok(observed) = (ObservabilityProblem { plant, domain, cascade, regression: rest, left_inverse }).solve() else {
-        return false;
-    };
+    let Ok(observed) = problem.solve() else { return false };
     let there: Vec<Vec<Expr>> = observed.stack.iter().map(|row| arena.substitute_all(row, &start)).collect();
-    there == observed.stack || full_rank(arena, domain, &there, rest.eta.len())
+    there == observed.stack || full_rank(arena, domain, &there, problem.unknowns())
 }
 
 fn undecided(plant: &Plant) -> Diagnostic {

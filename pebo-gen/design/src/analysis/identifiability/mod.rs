@@ -51,7 +51,12 @@ pub(super) fn prove(
 ) -> Claim<Identifiability> {
     let mut reported = Vec::new();
     let claim = by_outputs(plant, domain, cascade, regression, left_inverse, &mut reported);
-    let with_start = || by_start::decided(&ObservabilityProblem { plant, domain, cascade, regression, left_inverse });
+    let with_start = || {
+        let problem = ObservabilityProblem { plant, domain, cascade, regression, left_inverse };
+        by_start::decided(&problem, &|problem, found| {
+            by_outputs(plant, domain, cascade, problem.regression, left_inverse, found)
+        })
+    };
     match if claim.verdict == Verdict::Proved { None } else { with_start() } {
         // What the start does not mend is said of the outputs.
         Some((claim, open)) if claim.verdict != Verdict::Refuted => {
