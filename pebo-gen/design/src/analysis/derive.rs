@@ -193,7 +193,6 @@ fn without_value(plant: &Plant, code: Code, what: &str, (part, relation): Domain
 /// The diagnostic of a known start at which a condition of the proofs fails.
 fn start_without_value(plant: &Plant, conditions: &[DomainCondition]) -> Option<Diagnostic> {
     let arena = &plant.arena;
-    let (first, value) = plant.known.first()?;
     let values = plant.known.iter().map(|(state, value)| (*state, value.expr)).collect();
     let fails = |(part, relation): &&DomainCondition| {
         let at_start = arena.substitute(arena.substitute(*part, &values), &plant.domain().fixed);
@@ -202,9 +201,11 @@ fn start_without_value(plant: &Plant, conditions: &[DomainCondition]) -> Option<
     let assumed = plant.assumptions.iter().map(|assumption| (assumption.expr, assumption.relation));
     let needed: Vec<DomainCondition> = conditions.iter().copied().chain(assumed).collect();
     let (part, relation) = needed.iter().find(fails)?;
+    let held = arena.symbols_of(&[*part]);
+    let (state, value) = plant.known.iter().find(|(state, _)| held.contains(state))?;
     let message =
         format!("the proofs need `{} {}`, which fails where the plant starts", arena.print(*part), relation.sign());
-    let state = arena.name(*first);
+    let state = arena.name(*state);
     let help = format!("leave `{state}` out of `known`, or choose a phi that does without the condition");
     Some(Diagnostic::error(Code::LeftInverseUndecided, value.span, message).help(help))
 }
