@@ -1,9 +1,8 @@
 //! Claim 3: the outputs as a regression, with z replaced by its integral and the unknown constant.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::report::notes;
-use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::{Class, Regression, RegressionKind, Verdict};
 use pebo_design::plant::Plant;
@@ -65,7 +64,7 @@ fn equation(
 ) {
     let plant = subject.plant;
     let affine = setter.affine(regression.phi_0[row], &regression.phi_1[row], unknowns);
-    let in_z = in_z(plant, regression, row);
+    let in_z = regression.in_z(plant).map(|equations| equations[row].right);
     let parts = parts_of_z(plant, subject.derivation.class);
     let mut steps = Steps::default();
     match regression.kind {
@@ -106,31 +105,6 @@ fn equation(
         }
     }
     html.display(&steps.finish());
-}
-
-/// An equation of the regression in z: with theta = 0 the extension is z. For a static regression, the difference of
-/// its sides.
-fn in_z(plant: &Plant, regression: &Regression, row: usize) -> Option<Expr> {
-    let arena = &plant.arena;
-    // Functions of theta without a value at zero, or at some theta, cannot be evaluated there.
-    if regression.kind == RegressionKind::Implicit
-        || !arena.domain_conditions(&regression.eta, Regularity::Defined).is_empty()
-    {
-        return None;
-    }
-    let zeros: BTreeMap<Symbol, Expr> = plant.theta.iter().map(|theta| (*theta, arena.zero())).collect();
-    let eta = arena.substitute_all(&regression.eta, &zeros);
-    let unknown = arena.dot(&regression.phi_1[row], &eta);
-    let whole = match regression.kind {
-        RegressionKind::Static => arena.sub(regression.phi_0[row], unknown),
-        RegressionKind::Dynamic | RegressionKind::Implicit => arena.add(regression.phi_0[row], unknown),
-    };
-    let z = plant.z.iter().map(|z| arena.of_symbol(*z));
-    let extension = plant.chi.iter().chain(&plant.xi);
-    let at: BTreeMap<Symbol, Expr> = extension.copied().zip(z.clone().chain(z)).collect();
-    let in_z = arena.substitute(whole, &at);
-    let psi: BTreeSet<Symbol> = plant.psi.iter().flatten().copied().collect();
-    (!arena.depends_on(in_z, &psi)).then_some(in_z)
 }
 
 /// The components of z as sums of an integral and a constant.

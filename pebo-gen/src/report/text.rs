@@ -26,7 +26,7 @@ pub fn summary(plant: &Plant, derivation: &Derivation) -> String {
     }
     claim(&mut text, "cascade", &derivation.cascade, |_| cascade(plant, derivation));
     claim(&mut text, "left inverse", &derivation.left_inverse, |_| left_inverse(plant, derivation));
-    claim(&mut text, "regression", &derivation.regression, |r| regression(plant, r));
+    claim(&mut text, "regression", &derivation.regression, |r| regression(plant, derivation.class, r));
     claim(&mut text, "identifiability", &derivation.identifiability, |r| {
         let mut lines = notes::identifiability(plant, derivation);
         lines.extend(r.gram.iter().flat_map(|gram| excitation(plant, derivation, gram)));
@@ -96,20 +96,9 @@ fn cascade(plant: &Plant, derivation: &Derivation) -> Vec<String> {
         let kept = cascade.residual.iter().enumerate().filter(|(_, e)| !arena.is_zero(**e));
         return kept.map(|(i, e)| format!("z{}' keeps the term {}", i + 1, arena.print(*e))).collect();
     }
-    let mut lines: Vec<String> = match derivation.class {
-        Class::Pebo => {
-            cascade.h.iter().enumerate().map(|(i, h)| format!("z{}' = {}", i + 1, arena.print(*h))).collect()
-        }
-        Class::Gpebo => {
-            let mut lines: Vec<String> =
-                cascade.h.iter().enumerate().map(|(i, h)| format!("h{} = {}", i + 1, arena.print(*h))).collect();
-            for row in cascade.lambda.iter().flatten() {
-                let entries: Vec<String> = row.iter().map(|e| arena.print(*e)).collect();
-                lines.push(format!("Lambda row [{}]", entries.join(", ")));
-            }
-            lines
-        }
-    };
+    // A row of Lambda with its many zeros is read more easily as the rate that it makes.
+    let rates = cascade.rates(plant).into_iter().enumerate();
+    let mut lines: Vec<String> = rates.map(|(i, rate)| format!("z{}' = {}", i + 1, arena.print(rate))).collect();
     if derivation.class == Class::Gpebo {
         lines.insert(0, "generalised: z' = Lambda z + h, with z = xi + Psi theta".to_owned());
     }
@@ -135,7 +124,20 @@ fn left_inverse(plant: &Plant, derivation: &Derivation) -> Vec<String> {
     lines
 }
 
-fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
+/// The rows with their unknowns apart. Under a generalised cascade in z, where `Phi_1` would repeat each factor of z for
+/// each column of Psi.
+fn regression(plant: &Plant, class: Class, regression: &Regression) -> Vec<String> {
+    let arena = &plant.arena;
+    let in_z = (class == Class::Gpebo).then(|| regression.in_z(plant)).flatten();
+    let mut lines = match in_z {
+        Some(equations) => equations.iter().map(|equation| equation.text(arena, |e| arena.print(e))).collect(),
+        None => with_unknowns_apart(plant, regression),
+    };
+    lines.extend(notes::regression(plant, regression));
+    lines
+}
+
+fn with_unknowns_apart(plant: &Plant, regression: &Regression) -> Vec<String> {
     let arena = &plant.arena;
     let linear = regression.is_linear(plant);
     let unknowns = if linear { &plant.theta } else { &regression.eta_symbols };
@@ -170,7 +172,6 @@ fn regression(plant: &Plant, regression: &Regression) -> Vec<String> {
             lines.push(format!("{} = {}", unknown(index), arena.print(*eta)));
         }
     }
-    lines.extend(notes::regression(plant, regression));
     lines
 }
 

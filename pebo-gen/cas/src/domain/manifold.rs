@@ -45,13 +45,13 @@ pub struct Manifold {
     plans: Plans,
 }
 
-/// Plans by their equations; none where there is no plan.
-type Plans = Rc<RefCell<BTreeMap<Vec<Expr>, Option<Rc<Solution>>>>>;
+/// Plans by their equations and the symbols that bounds confine; none where there is no plan.
+type Plans = Rc<RefCell<BTreeMap<(Vec<Expr>, BTreeSet<Symbol>), Option<Rc<Solution>>>>>;
 
 impl Manifold {
     /// The manifold of these equations. The first of the groups must not occur in results, the last are constants.
     pub fn new(arena: &Arena, facts: &Facts, equations: Vec<Expr>, groups: Vec<BTreeSet<Symbol>>) -> Self {
-        let solver = Solver { arena, facts, groups: &groups, exact: true };
+        let solver = Solver { arena, facts, groups: &groups, confined: &BTreeSet::new(), exact: true };
         let exact = solver
             .solve(equations.clone())
             .unwrap_or_else(|_| Solution { open: equations.clone(), ..Solution::default() });
@@ -135,7 +135,7 @@ impl Manifold {
             unsolved.iter().any(|other| other != equation && !arena.symbols_of(&[*other]).is_disjoint(&own))
         };
         let equation = self.exact.open.iter().copied().find(shares)?;
-        let plan = self.plan(arena, &unsolved, &Point::new());
+        let plan = self.plan(arena, &unsolved, &Point::new(), &BTreeSet::new());
         plan.is_none_or(|plan| plan.is_search()).then_some(equation)
     }
 
@@ -164,15 +164,22 @@ impl Manifold {
         })
     }
 
-    /// Steps that complete a point with these values; none where an equation cannot be solved, or cannot hold.
-    pub(crate) fn plan(&self, arena: &Arena, equations: &[Expr], fixed: &Point) -> Option<Rc<Solution>> {
-        let equations = arena.substitute_all(equations, fixed);
+    /// Steps that complete a point with these values; none where an equation cannot be solved, or cannot hold. They are
+    /// for symbols between no bounds where that is possible: the value that a step gives rarely lies within narrow ones.
+    pub(crate) fn plan(
+        &self,
+        arena: &Arena,
+        equations: &[Expr],
+        fixed: &Point,
+        confined: &BTreeSet<Symbol>,
+    ) -> Option<Rc<Solution>> {
+        let equations = (arena.substitute_all(equations, fixed), confined.clone());
         if let Some(plan) = self.plans.borrow().get(&equations) {
             return plan.clone();
         }
         let facts = Facts::new();
-        let solver = Solver { arena, facts: &facts, groups: &self.groups, exact: false };
-        let solution = solver.solve(equations.clone()).ok();
+        let solver = Solver { arena, facts: &facts, groups: &self.groups, confined, exact: false };
+        let solution = solver.solve(equations.0.clone()).ok();
         let plan = solution.filter(|solution| solution.open.is_empty()).map(Rc::new);
         // With more work there may be one.
         if plan.is_some() || !arena.budget().is_exhausted() {
@@ -220,14 +227,16 @@ struct Solver<'a> {
     arena: &'a Arena,
     facts: &'a Facts,
     groups: &'a [BTreeSet<Symbol>],
+    /// The symbols that are solved for last.
+    confined: &'a BTreeSet<Symbol>,
     /// True if every solution has to be kept.
     exact: bool,
 }
 
 /// A candidate for a step; the one with the least cost is taken.
 struct Candidate {
-    /// True if the divisor is no number; the symbol's group; terms of the equation.
-    cost: (bool, usize, usize),
+    /// True if the symbol is confined; true if the divisor is no number; the symbol's group; terms of the equation.
+    cost: (bool, bool, usize, usize),
     equation: usize,
     step: Step,
 }
@@ -274,7 +283,7 @@ impl Solver<'_> {
         loop {
             let mut ways = self.candidates(&mut equations, &|degree| degree == 1)?;
             let holders = |symbol| equations.iter().filter(|e| self.arena.symbols_of(&[**e]).contains(&symbol)).count();
-            ways.retain(|way| !way.cost.0 && holders(way.step.symbol) == 1);
+            ways.retain(|way| !way.cost.1 && holders(way.step.symbol) == 1);
             let Some(way) = ways.into_iter().min_by_key(|way| way.cost) else { return Ok((steps, equations)) };
             equations.remove(way.equation);
             steps.push(way.step);
@@ -308,7 +317,7 @@ impl Solver<'_> {
                     step => step?,
                 };
                 if let Some((step, divided)) = step {
-                    let cost = (!divided, place, numerator.term_count());
+                    let cost = (self.confined.contains(&symbol), !divided, place, numerator.term_count());
                     ways.push(Candidate { cost, equation, step });
                 }
             }
@@ -486,11 +495,24 @@ mod tests {
         let oval = arena.sub(arena.sum([power(a), power(b), arena.mul(a, b)]), arena.one());
         let scaled = arena.sub(c, arena.scale(a, &1000.into()));
         let domain = domain(&arena, &[oval, scaled, arena.sub(r, arena.add(c, b))]);
-        let plan = domain.manifold.plan(&arena, domain.manifold.equations(), &Point::new()).expect("a plan");
+        let plan =
+            domain.manifold.plan(&arena, domain.manifold.equations(), &Point::new(), &BTreeSet::new()).expect("a plan");
         assert!(plan.is_search() && plan.symbols().len() == 2, "{:?}", plan.symbols());
         let points: Vec<Point> = domain.points(&arena, &[a, r]).take(5).collect();
         assert_eq!(points.len(), 5);
         assert!(points.iter().all(|point| domain.contains(&arena, point)));
+    }
+
+    /// A value that follows from others would rarely lie between its bounds.
+    #[test]
+    fn a_symbol_between_narrow_bounds_is_drawn() {
+        let arena = Arena::new();
+        let [a, b, c, p] = symbols(&arena);
+        let mut domain = domain(&arena, &[arena.sub(a, arena.add(p, arena.mul(b, c)))]);
+        let bound = |number: i64| arena.number(Rational::new(number, 1000).unwrap());
+        domain.facts.assume(arena.sub(p, bound(100)), Relation::Positive);
+        domain.facts.assume(arena.sub(bound(101), p), Relation::Positive);
+        assert_eq!(domain.points(&arena, &[p]).take(5).count(), 5);
     }
 
     #[test]

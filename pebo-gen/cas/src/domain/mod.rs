@@ -88,7 +88,10 @@ impl Domain {
         let (facts, equations) = self.relevant(arena, &mut symbols);
         let facts: Vec<(Expr, Relation)> =
             facts.into_iter().map(|(fact, relation)| (arena.substitute(fact, &self.fixed), relation)).collect();
-        let plan = self.manifold.plan(arena, &equations, &self.fixed);
+        let between =
+            |(symbol, range): (Symbol, Bounds)| (range.low.is_some() && range.high.is_some()).then_some(symbol);
+        let confined = ranges(arena, &facts).into_iter().filter_map(between).collect();
+        let plan = self.manifold.plan(arena, &equations, &self.fixed, &confined);
         let trials = if plan.is_some() { most } else { 0 };
         let plan = plan.unwrap_or_default();
         let solved = plan.symbols();

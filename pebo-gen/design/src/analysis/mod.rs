@@ -28,6 +28,7 @@ mod derive;
 mod design;
 mod identifiability;
 mod identities;
+mod in_z;
 mod left_inverse;
 mod limited;
 mod output_slopes;
@@ -52,6 +53,7 @@ pub use design::{
     TrajectoryCondition, UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;
+pub use in_z::{EquationInZ, LeftSide};
 pub use output_slopes::{OutputSlopes, are_affine_in_outputs};
 pub use parameters::Sign;
 pub use pebo_cas::domain::cells::Side;

@@ -14,7 +14,7 @@ use crate::emit::definition::{
 };
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{
-    Class, Derivation, Excitation, Fundamental, Origin, Regression, RegressionKind, UnusedOutput,
+    Class, Derivation, EquationInZ, Excitation, Fundamental, Origin, Regression, RegressionKind, UnusedOutput,
 };
 use pebo_design::plant::{Formula, Plant};
 use pebo_design::program::{Cost, StagedPrograms};
@@ -72,8 +72,15 @@ pub(in crate::emit) fn formulas(plant: &Plant, definitions: &Definitions, staged
     let entries = shown.flat_map(|definition| definition.rows.concat());
     let terms = staged.terms.iter().map(|term| arena.substitute(term.1, &constants));
     let all = states.chain(outputs.map(|output| output.expr)).chain(plant.transform()).chain(identities(plant));
-    let all = all.chain(entries);
+    let in_z = in_z(plant, definitions).into_iter().flatten();
+    let all =
+        all.chain(entries).chain(in_z.flat_map(|equation| [Some(equation.right), equation.left.formula()]).flatten());
     all.chain(definitions.regression.eta.iter().copied()).chain(terms).collect()
+}
+
+/// The regression in z, where `phi_1` would repeat each factor of z for each column of `Psi`.
+fn in_z(plant: &Plant, definitions: &Definitions) -> Option<Vec<EquationInZ>> {
+    (definitions.class == Class::Gpebo).then(|| definitions.regression.in_z(plant)).flatten()
 }
 
 fn equations(plant: &Plant, abbreviations: &Abbreviations) -> Vec<String> {
@@ -156,8 +163,15 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
     lines.extend(text(laws));
     lines.extend([String::new(), "with".to_owned()]);
     let mut blocks = Vec::new();
+    let in_z = in_z(plant, definitions);
     for definition in &definitions.functions {
         match definition.name {
+            "phi_0" if in_z.is_some() => {
+                let print = |formula| abbreviations.print(arena, formula);
+                blocks.extend(in_z.iter().flatten().map(|equation| equation.text(arena, print)));
+            }
+            // Their formulas stand with the functions.
+            "primitive_0" | "primitive_1" | "phi_1" if in_z.is_some() => {}
             "primitive_0" if definitions.regression.kind == RegressionKind::Dynamic => {}
             "theta" if is_linear(arena, definitions) => {}
             // The laws and formulas have the values, and with them their derivatives.

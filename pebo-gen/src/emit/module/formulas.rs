@@ -58,7 +58,7 @@ pub(super) fn named((arena, abbreviations): Print, names: &[Symbol], rows: &[Vec
     entries.map(|(name, entry)| format!("{} = {}", arena.name(*name), abbreviations.print(arena, *entry))).collect()
 }
 
-/// A matrix with its columns aligned; entry by entry, where a row of it would be longer than a line.
+/// A matrix with its columns aligned; its entries that are not zero, where a row of it would be longer than a line.
 fn bracketed((arena, abbreviations): Print, name: &str, rows: &[Vec<Expr>], width: usize) -> Vec<String> {
     let entries: Vec<Vec<String>> =
         rows.iter().map(|row| row.iter().map(|&entry| abbreviations.print(arena, entry)).collect()).collect();
@@ -77,10 +77,16 @@ fn bracketed((arena, abbreviations): Print, name: &str, rows: &[Vec<Expr>], widt
     let place = |row: usize, column: usize| {
         if columns == 1 { format!("{name}[{}]", row + 1) } else { format!("{name}[{}, {}]", row + 1, column + 1) }
     };
-    let listed = entries.iter().enumerate().flat_map(|(row, cells)| {
-        cells.iter().enumerate().map(move |(column, entry)| format!("{} = {entry}", place(row, column)))
-    });
-    listed.collect()
+    let is_named = |entry: &String| entry != "0";
+    let mut listed: Vec<String> = Vec::new();
+    for (row, cells) in entries.iter().enumerate() {
+        let named = cells.iter().enumerate().filter(|(_, entry)| is_named(entry));
+        listed.extend(named.map(|(column, entry)| format!("{} = {entry}", place(row, column))));
+    }
+    if !entries.iter().flatten().all(is_named) {
+        listed.push(format!("{name}[..] = 0 elsewhere"));
+    }
+    listed
 }
 
 /// Names in parentheses, unless there is one.

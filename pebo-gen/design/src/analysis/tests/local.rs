@@ -36,6 +36,18 @@ fn sides_are_those_where_the_extension_is() {
     assert_eq!((mixed.rows(), mixed.instants(&plant.arena)), (Vec::new(), 1));
 }
 
+/// Each piece of a table is a cell, with points between its ends: also a narrow one, and with assumptions.
+#[test]
+fn straight_pieces_beside_an_unknown_factor_of_an_input_identify_it() {
+    let table = "points: [[0, 3.0], [0.1, 3.3], [0.2, 3.5], [1, 4.2]], interpolation: linear";
+    let lines = format!(
+        "parameters: {{Q: 9000}}\nx: [s, R]\ny: [V]\nu: [I]\nassume: [0 < s < 1]\ndefine: {{ocv: {{table: s, {table}}}}}\n\
+         f_x: {{s: -I/Q, R: 0}}\ng_y: {{V: ocv - R*I}}\nphi: [s, R]"
+    );
+    let (plant, regression) = sides(&lines);
+    assert_eq!(printed(&plant, &regression.phi_1[0]), ["ocv_slope(chi1)", "-I"]);
+}
+
 /// What is linear is exact, whatever the model asks for.
 #[test]
 fn linear_equations_are_no_local_ones() {
