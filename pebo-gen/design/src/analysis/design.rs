@@ -369,6 +369,9 @@ pub struct Trajectories {
     /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
     /// None if undecided.
     pub by_itself: Option<bool>,
+    /// True if it is so for every course of the inputs: none of them keeps the plant where it hides unknowns, but on
+    /// listed trajectories.
+    pub under_any_inputs: bool,
     /// True if nothing has to move: there are equilibria outside the listed trajectories, and the rank is full at almost
     /// all of these.
     pub at_rest: bool,

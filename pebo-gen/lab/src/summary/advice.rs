@@ -300,8 +300,8 @@ fn unexcited(diagnostic: Diagnostic, summary: &Summary) -> Option<Diagnostic> {
             diagnostic
                 .note(format!("excitation: the data never told `{weakest}` apart from the rest of the unknown"))
                 .help(
-                    "let inputs or set points move more, or longer: the verdict on identifiability says which motions \
-                     it needs",
+                    "let inputs or set points move more, longer, or in another way, as with a second frequency: the \
+                     verdict on identifiability says which motions it needs",
                 ),
         ),
         Excitation::Lost { since, weakest } => {

@@ -98,7 +98,10 @@ impl Joined {
     pub(super) fn claim(mut self, plant: &Plant, cells: usize) -> Claim<Identifiability> {
         self.add_cells(plant, cells);
         let Self { constants, parameters, by_itself, blind, .. } = self;
-        let trajectories = Trajectories { by_itself, at_rest: false, blind, everywhere: false, parameters };
+        // Of cells that hide unknowns, and of the paths between cells, this was not worked out.
+        let unknown =
+            Trajectories { by_itself, under_any_inputs: false, at_rest: false, blind, everywhere: false, parameters };
+        let trajectories = unknown;
         Claim {
             verdict: Verdict::Proved,
             result: Some(Identifiability {

@@ -22,6 +22,7 @@ pub(in crate::analysis) mod words;
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{Still, Trajectories};
+use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::observation::Observation;
@@ -62,8 +63,16 @@ pub(super) fn of(problem: &ObservabilityProblem<'_>) -> (Trajectories, Vec<Expr>
         (_, Some(true)) => list.is_complete = false,
         _ => problem.under_excitation(constant.as_ref().ok(), observed, &mut list),
     }
+    let under_any_inputs = match &constant {
+        _ if inputs == Still::Nothing => true,
+        Ok(_) if by_itself == Some(true) => {
+            plant.arena.budget().share(SHARE_OF_REMARKS, || problem.holds_under_any_inputs(&mut list)).unwrap_or(false)
+        }
+        _ => false,
+    };
     let everywhere = list.is_complete;
-    (Trajectories { by_itself, at_rest: false, blind: list.statements(), everywhere, parameters }, constants)
+    let blind = list.statements();
+    (Trajectories { by_itself, under_any_inputs, at_rest: false, blind, everywhere, parameters }, constants)
 }
 
 /// A domain on which these are not zero, and these are positive.
@@ -77,6 +86,24 @@ pub(super) fn assuming(domain: &Domain, nonzero: &[Expr], positive: &[Expr]) -> 
 }
 
 impl ObservabilityProblem<'_> {
+    /// Tests whether unknowns that are identifiable while all inputs are constant provably are so for every course of the
+    /// inputs, but on listed trajectories: a course may cancel what the rows of constant ones show. Where the rows of free
+    /// inputs lose rank, no derivative of an input decides, which would be an equation for its course.
+    fn holds_under_any_inputs(&self, list: &mut List<'_>) -> Result<bool, Obstacle> {
+        let (free, nothing) = (self.whole(Still::Nothing), BTreeSet::new());
+        let zero_set = self.zero_set(self.domain, &self.solve_along(self.domain, &nothing)?)?;
+        let is_declared = |zero: &Expr| self.plant.arena.symbols_of(&[*zero]).iter().all(|s| self.plant.declares(*s));
+        if !zero_set.all || !zero_set.zeros.iter().all(is_declared) {
+            return Ok(false);
+        }
+        for zero in zero_set.zeros {
+            if !list.add_zero(&free, zero, &nothing)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// Adds the trajectories that hide unknowns which are identifiable while all inputs are constant: with inputs that
     /// move, or with constant ones.
     fn under_constant_inputs(&self, observed: &Observation, conditions: &[Expr], list: &mut List<'_>) {

@@ -19,12 +19,20 @@ impl Trajectories {
     /// The necessary motion, in a line, and the trajectories that hide unknowns, in a line each.
     pub fn lines(&self, plant: &Plant) -> Vec<String> {
         let has_no_inputs = plant.commanded().next().is_none();
+        let are_points = self.blind.iter().all(|blind| !blind.is_decided() && blind.is_at_rest());
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => self.of_cells(),
+            (Some(true), true, true) if !self.under_any_inputs && self.blind.is_empty() => {
+                "with constant inputs the unknowns are identified, even at rest, with others on almost every trajectory"
+            }
+            (Some(true), true, true) if !self.under_any_inputs => {
+                "with constant inputs the unknowns are identified, even at rest, but for what follows; with others on almost \
+                 every trajectory"
+            }
             (Some(true), true, true) if self.blind.is_empty() => {
                 "the unknowns are identified without excitation by the inputs, even at rest"
             }
-            (Some(true), true, true) if self.blind.iter().all(|blind| !blind.is_decided() && blind.is_at_rest()) => {
+            (Some(true), true, true) if are_points => {
                 "the unknowns are identified without excitation by the inputs, even at rest, but for these points"
             }
             (Some(true), true, true) => {
@@ -35,6 +43,9 @@ impl Trajectories {
                  the plant rests"
             }
             (Some(true), false, true) if has_no_inputs => "the unknowns are identified while the plant moves",
+            (Some(true), false, true) if self.under_any_inputs => {
+                "the unknowns are identified without excitation by the inputs while the plant moves"
+            }
             // A course of the inputs may keep a plant where it hides unknowns, as a current that is controlled does.
             (Some(true), false, true) => {
                 "with constant inputs the unknowns are identified while the plant moves, with others on almost every trajectory"
