@@ -84,6 +84,23 @@ fn natural_models_that_take_long_are_undecided_and_name_the_phase() {
     }
 }
 
+/// A plant of which a symmetry proves that no observer recovers its states, whatever else the search had no time for.
+#[test]
+fn a_rejection_is_never_said_to_be_for_want_of_time() {
+    let scaled =
+        "model: m\nx: [mx, my, s, b]\ny: [h]\nu: [om]\nf_x: {mx: om*my, my: -om*mx, s: 0, b: 0}\ng_y: {h: s*mx + b}";
+    let mut rejected = 0;
+    for hundredths in 12..=30 {
+        let outcome = derived(scaled, Budget::of_seconds(f64::from(hundredths) / 100.0));
+        let limited = phase(&outcome);
+        let Ok(derived) = outcome else { panic!("{limited:?}") };
+        let is_rejected = derived.derivation.outcome == Outcome::Rejected;
+        assert_eq!(is_rejected, limited.is_none(), "{hundredths}: {limited:?}");
+        rejected += usize::from(is_rejected);
+    }
+    assert!(rejected > 0);
+}
+
 /// Whatever the number of steps, a model is accepted or undecided, and proved claims remain proved.
 #[test]
 fn a_budget_never_makes_a_true_claim_false() {

@@ -130,7 +130,10 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();
     let is_unobservable = symmetry.as_ref().is_some_and(|symmetry| match symmetry.kind {
         SymmetryKind::Direction => true,
-        SymmetryKind::Signs | SymmetryKind::Exchange => !declared.iter().any(decides),
+        // Without time, no declaration may have been tried.
+        SymmetryKind::Signs | SymmetryKind::Exchange => {
+            !plant.arena.budget().is_exhausted() && !declared.iter().any(decides)
+        }
     });
     let verdict = match (found, excluded || is_unobservable) {
         (true, _) => SearchVerdict::Found,

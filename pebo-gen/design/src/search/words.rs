@@ -228,10 +228,13 @@ impl Search {
     /// The refusal of a model without a transform, after a search that found none; `span` is where it declares its
     /// states.
     pub fn refusal(&self, plant: &Plant, span: Span) -> Diagnostic {
-        if plant.arena.budget().is_exhausted() {
+        // That no observer recovers the states needs no search.
+        if plant.arena.budget().is_exhausted() && !self.is_unobservable {
             let limited = Diagnostic::limit_reached("the search for phi", span);
             let settled = self.bounds().filter(|bound| bound.excludes()).map(|bound| bound.sentence(&plant.arena));
-            return self.declared.iter().map(declared).chain(settled).fold(limited, Diagnostic::note);
+            let symmetry = self.symmetry.iter().map(|symmetry| symmetry.sentence(&plant.arena));
+            let settled = symmetry.chain(self.declared.iter().map(declared)).chain(settled);
+            return settled.fold(limited, Diagnostic::note);
         }
         let states: Vec<String> = plant.x.iter().map(|state| plant.arena.name(state.symbol)).collect();
         let states = listed(states.iter().map(String::as_str));
