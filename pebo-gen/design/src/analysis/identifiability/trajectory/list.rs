@@ -3,13 +3,15 @@
 use std::collections::BTreeSet;
 
 use crate::analysis::design::{BlindTrajectory, Still, TrajectoryCondition};
+use crate::plant::Plant;
 use pebo_cas::domain::cells::Side;
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::operations_of;
 use pebo_cas::tower::Obstacle;
-use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
+use pebo_cas::{Domain, Expr, Relation, Symbol};
 
 use super::family::{Family, Set};
+use crate::analysis::identifiability::flow::varies;
 use crate::analysis::identifiability::problem::ObservabilityProblem;
 
 /// Operations of a condition up to which it is named where nothing was decided: in a longer one a reader finds nothing.
@@ -98,9 +100,9 @@ impl<'a> List<'a> {
 
     /// Adds a statement in place of those that follow from it.
     pub(super) fn state(&mut self, blind: BlindTrajectory, domain: Domain) {
-        let arena = &self.problem.plant.arena;
+        let plant = self.problem.plant;
         self.found.retain(|(other, there)| {
-            other.hidden.len() != blind.hidden.len() || !blind.condition.holds_on(arena, &other.condition.still, there)
+            other.hidden.len() != blind.hidden.len() || !blind.condition.holds_on(plant, &other.condition.still, there)
         });
         self.found.push((blind, domain));
     }
@@ -139,7 +141,7 @@ impl<'a> List<'a> {
     /// Tests whether one of the conditions holds on each of the cells of a domain.
     fn are_covering(&self, all: &[&TrajectoryCondition], dividers: &[Expr], still: &Still, domain: &Domain) -> bool {
         let arena = &self.problem.plant.arena;
-        if all.iter().any(|condition| condition.holds_on(arena, still, domain)) {
+        if all.iter().any(|condition| condition.holds_on(self.problem.plant, still, domain)) {
             return true;
         }
         let Some((divider, others)) = dividers.split_first() else { return false };
@@ -172,11 +174,17 @@ impl<'a> List<'a> {
 
 impl TrajectoryCondition {
     /// Tests whether it holds throughout a domain while these do not move.
-    fn holds_on(&self, arena: &Arena, still: &Still, domain: &Domain) -> bool {
+    fn holds_on(&self, plant: &Plant, still: &Still, domain: &Domain) -> bool {
+        let arena = &plant.arena;
         let is_still = match (&self.still, still) {
             (Still::Nothing, _) | (_, Still::Plant) => true,
-            (Still::Inputs(own), Still::Inputs(inputs)) => own.iter().all(|input| inputs.contains(input)),
-            _ => false,
+            (Still::Inputs(own), _) => {
+                let inputs = if let Still::Inputs(inputs) = still { inputs.as_slice() } else { &[] };
+                let values = domain.manifold.determined();
+                let has_value = |input: &Symbol| values.get(input).is_some_and(|value| !varies(plant, *value));
+                own.iter().all(|input| inputs.contains(input) || has_value(input))
+            }
+            (Still::Plant, _) => false,
         };
         is_still
             && self.zeros.iter().all(|zero| is_zero(arena, *zero, domain))

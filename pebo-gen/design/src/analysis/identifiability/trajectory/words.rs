@@ -1,5 +1,7 @@
 //! Sentences on the necessary motion and on the trajectories that hide unknowns.
 
+use std::collections::BTreeMap;
+
 use crate::analysis::design::{BlindTrajectory, Determined, Still, Trajectories, TrajectoryCondition};
 use crate::analysis::identifiability::flow::varies;
 use crate::plant::Plant;
@@ -165,6 +167,18 @@ impl BlindTrajectory {
 }
 
 impl TrajectoryCondition {
+    /// The sides that the zeros leave open: of `ph > 0` and `ph = 1` the second says all.
+    fn sides_beside_zeros(&self, plant: &Plant) -> Vec<(Expr, Side)> {
+        let arena = &plant.arena;
+        let values = self.zeros.iter().filter_map(|zero| solved(plant, *zero)).collect();
+        let is_open = |(divider, side): &&(Expr, Side)| {
+            let there = arena.substitute(side.positive(arena, *divider), &values);
+            !arena.symbols_of(&[there]).is_empty()
+                || !arena.separated_from_zero(there, &BTreeMap::new()).is_some_and(|value| value.is_positive())
+        };
+        self.sides.iter().filter(is_open).copied().collect()
+    }
+
     /// The trajectory, with formulas as code.
     fn worded(&self, plant: &Plant) -> String {
         let still = match &self.still {
@@ -179,7 +193,8 @@ impl TrajectoryCondition {
             }
             Still::Plant => Some("the plant rests".to_owned()),
         };
-        let sides = (!self.sides.is_empty()).then(|| on_sides(plant, &self.sides));
+        let sides = self.sides_beside_zeros(plant);
+        let sides = (!sides.is_empty()).then(|| on_sides(plant, &sides));
         let mut parts: Vec<String> = sides.into_iter().chain(still).collect();
         for zero in &self.zeros {
             let part = format!("`{}`", equation(plant, *zero));
@@ -191,20 +206,27 @@ impl TrajectoryCondition {
     }
 }
 
-/// The equation of a zero: for a symbol, a signal if it holds one, whose value is a number or another symbol.
+/// A symbol, a signal if there is one, whose value a zero makes a number or another symbol; with that value.
+fn solved(plant: &Plant, zero: Expr) -> Option<(Symbol, Expr)> {
+    let arena = &plant.arena;
+    if let Some(symbol) = arena.as_symbol(zero) {
+        return Some((symbol, arena.zero()));
+    }
+    let Node::Sum(sum) = arena.node(zero) else { return None };
+    sum.terms.iter().find_map(|(term, slope)| {
+        let symbol = arena.as_symbol(*term).filter(|_| varies(plant, *term) == varies(plant, zero))?;
+        let value = arena.sub(*term, arena.scale(zero, &slope.recip()?));
+        (arena.as_symbol(value).is_some() || arena.symbols_of(&[value]).is_empty()).then_some((symbol, value))
+    })
+}
+
+/// The equation of a zero, for a symbol if it gives one.
 fn equation(plant: &Plant, zero: Expr) -> String {
     let arena = &plant.arena;
-    if let Node::Sum(sum) = arena.node(zero) {
-        for (term, slope) in &sum.terms {
-            let is_solved = arena.as_symbol(*term).is_some() && varies(plant, *term) == varies(plant, zero);
-            let Some(inverse) = slope.recip().filter(|_| is_solved) else { continue };
-            let value = arena.sub(*term, arena.scale(zero, &inverse));
-            if arena.as_symbol(value).is_some() || arena.symbols_of(&[value]).is_empty() {
-                return format!("{} = {}", arena.print(*term), arena.print(value));
-            }
-        }
+    match solved(plant, zero) {
+        Some((symbol, value)) => format!("{} = {}", arena.name(symbol), arena.print(value)),
+        None => format!("{} = 0", arena.print(zero)),
     }
-    format!("{} = 0", arena.print(zero))
 }
 
 /// The side of a number on which a symbol is, if the sign is of the two: `soc > 0.8`.
