@@ -100,7 +100,7 @@ impl Scenario {
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = scored.estimate.baseline.is_none() && contradiction.is_none();
-            let expected = own.then(|| expected.since(score.since, place)).flatten();
+            let expected = own.then(|| expected.beside(&score, place)).flatten();
             EstimateScore {
                 estimate: scored.estimate.clone(),
                 score,

@@ -318,7 +318,7 @@ impl<'a> Piece<'a> {
         let rated = |(place, (scored, score)): (usize, (&ScoredEstimate, &Scorer))| {
             let score = score.finish();
             let own = measured.get(place).filter(|_| contradiction.is_none());
-            let expected = own.and_then(|estimate| self.expected.since(score.since, *estimate));
+            let expected = own.and_then(|estimate| self.expected.beside(&score, *estimate));
             EstimateScore { estimate: scored.estimate.clone(), score, expected, step: scored.step, outside: false }
         };
         let misfit = |((output, _), score): (&(usize, bool), &Scorer)| OutputResidual {

@@ -1,5 +1,7 @@
 //! The standard errors that an observer predicts for its estimates, as a run goes on.
 
+use super::Score;
+
 /// The predicted standard errors at some instants.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ExpectedErrors {
@@ -23,14 +25,16 @@ impl ExpectedErrors {
         self.instants.push((t, errors));
     }
 
-    /// The root mean square of an estimate's predicted errors from an instant on, in time since the beginning. An
-    /// estimate that is right from the beginning on is so by its start: then without the first ones, if these are
-    /// [`UNKNOWN`] times as large as those in the second half, as nothing was known of it.
-    pub(crate) fn since(&self, t: f64, estimate: usize) -> Option<f64> {
-        let later = self.instants.iter().filter(|(at, _)| *at >= t);
+    /// The root mean square of an estimate's predicted errors while its own are scored. One that never errs by more than
+    /// [`UNKNOWN`] times what is predicted in the second half is right by its start: then without the first predictions,
+    /// if these are so large, as nothing was known of it.
+    pub(crate) fn beside(&self, score: &Score, estimate: usize) -> Option<f64> {
+        let later = self.instants.iter().filter(|(at, _)| *at >= score.since);
         let later: Vec<f64> = later.filter_map(|(_, errors)| errors.get(estimate).copied()).collect();
         let in_the_end = root_mean_square(&later[later.len() / 2..])?;
-        let known = later.iter().position(|error| t > 0.0 || *error <= UNKNOWN * in_the_end);
+        let largest = UNKNOWN * in_the_end;
+        let is_right = score.since <= 0.0 && score.worst <= largest;
+        let known = later.iter().position(|error| !is_right || *error <= largest);
         root_mean_square(&later[known.unwrap_or(0)..])
     }
 }
@@ -54,14 +58,19 @@ mod tests {
         for (t, error) in [(0.0, 10.0), (1.0, 0.05), (2.0, 0.01), (3.0, 0.01), (4.0, 1e-6), (5.0, 1e-6)] {
             expected.add(t, Some(vec![error]));
         }
-        let is = |t: f64, errors: &[f64]| {
+        let score =
+            |since: f64, worst: f64| Score { first: 0.0, last: 0.0, settled: None, since, rms: 0.0, worst, trend: 1.0 };
+        let is = |since: f64, worst: f64, errors: &[f64]| {
             let mean = root_mean_square(errors).expect("errors");
-            assert!((expected.since(t, 0).expect("later instants") - mean).abs() < 1e-15, "{t}");
+            let found = expected.beside(&score(since, worst), 0).expect("later instants");
+            assert!((found - mean).abs() < 1e-15, "{since}");
         };
-        is(0.0, &[0.05, 0.01, 0.01, 1e-6, 1e-6]);
+        is(0.0, 0.02, &[0.05, 0.01, 0.01, 1e-6, 1e-6]);
+        // One that errs at first has settled at once if its state grows so large.
+        is(0.0, 3.0, &[10.0, 0.05, 0.01, 0.01, 1e-6, 1e-6]);
         // Of one that settled later nothing is left out.
-        is(3.0, &[0.01, 1e-6, 1e-6]);
-        is(4.0, &[1e-6, 1e-6]);
-        assert_eq!(expected.since(6.0, 0), None);
+        is(3.0, 0.02, &[0.01, 1e-6, 1e-6]);
+        is(4.0, 0.02, &[1e-6, 1e-6]);
+        assert_eq!(expected.beside(&score(6.0, 0.02), 0), None);
     }
 }
