@@ -5,14 +5,14 @@
 //! of a - b is 0 and its cosine is 1, so that a - b is a multiple of 2 pi; and both ranges lie within a half circle, so
 //! that it is zero. The same two steps prove `asin(sin(w)) = w` if the facts keep w on the principal branch.
 
+use crate::Rational;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::interval::Precision;
 use crate::number::rational::half;
-use crate::{Domain, Facts, Rational};
 
+use super::angle::{InverseAngle, Pair};
 use super::range::Range;
-use super::trigonometric::Pair;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Field, Obstacle};
 
@@ -21,14 +21,6 @@ const MOST_ANGLES: usize = 8;
 
 /// The largest multiple of pi/12 in a relation: two full turns.
 const MOST_TWELFTHS: i32 = 48;
-
-/// An angle with its sine and cosine.
-#[derive(Clone, Debug)]
-pub(in crate::tower) struct InverseAngle {
-    value: Fraction,
-    pair: Pair,
-    range: Range,
-}
 
 /// `own * new = sum of share * known + twelfths * pi/12`
 struct Guess {
@@ -194,15 +186,10 @@ fn ratio(n: i32, d: i32) -> Rational {
     Rational::new(i64::from(n), i64::from(d)).unwrap_or(Rational::ZERO)
 }
 
-/// The domain on which guesses are tried.
-pub(in crate::tower) fn domain_of(facts: &Facts) -> Domain {
-    Domain { facts: facts.clone(), ..Domain::default() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Arena;
+    use crate::{Arena, Facts};
 
     #[test]
     fn half_an_angle_is_determined_only_within_a_half_turn() {

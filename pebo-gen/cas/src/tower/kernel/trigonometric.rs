@@ -7,12 +7,10 @@
 use crate::graph::expr::{Expr, Node};
 use crate::{Integer, Rational};
 
+use super::angle::Pair;
 use super::range::Range;
 use crate::tower::fraction::{Fraction, negated};
 use crate::tower::{Family, Field, Obstacle};
-
-/// Sine and cosine of one angle.
-pub(in crate::tower) type Pair = (Fraction, Fraction);
 
 impl Field<'_> {
     /// Sine and cosine of an argument.
