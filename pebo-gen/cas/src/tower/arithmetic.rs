@@ -9,16 +9,16 @@
 use crate::Rational;
 use crate::poly::{Poly, steps};
 
-use super::fraction::{Fraction, negated};
+use super::fraction::Fraction;
 use super::{Field, Obstacle};
 
 /// The greatest number of terms of a denominator that its conjugate multiplies: longer ones grow excessively.
 const MOST_CLEARED: usize = 16;
 
 impl Field<'_> {
-    /// The canonical fraction of two polynomials.
-    pub(in crate::tower) fn fraction_of(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
-        self.work().spend(steps(num.term_count() + den.term_count()))?;
+    /// The canonical fraction of two polynomials over the kernels.
+    pub fn quotient(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
+        self.limit().spend(steps(num.term_count() + den.term_count()))?;
         let mut num = self.reduce(num)?;
         if den.is_one() {
             return Ok(Fraction::polynomial(num));
@@ -30,8 +30,8 @@ impl Field<'_> {
         while den.term_count() <= MOST_CLEARED
             && let Some(conjugate) = self.conjugate(&den)?
         {
-            num = self.reduce(&num.mul(&conjugate, self.work())?)?;
-            den = self.reduce(&den.mul(&conjugate, self.work())?)?;
+            num = self.reduce(&num.mul(&conjugate, self.limit())?)?;
+            den = self.reduce(&den.mul(&conjugate, self.limit())?)?;
             if den.is_zero() {
                 return Err(Obstacle::DivisionByZero);
             }
@@ -40,10 +40,10 @@ impl Field<'_> {
             return Ok(Fraction::zero());
         }
         if !den.is_one() {
-            let common = num.gcd(&den, self.work())?;
+            let common = num.gcd(&den, self.limit())?;
             if !common.is_one() {
-                num = exact(num.div_exact(&common, self.work())?)?;
-                den = exact(den.div_exact(&common, self.work())?)?;
+                num = exact(num.div_exact(&common, self.limit())?)?;
+                den = exact(den.div_exact(&common, self.limit())?)?;
             }
             if den.leading_coefficient().is_negative() {
                 num = -&num;
@@ -53,10 +53,19 @@ impl Field<'_> {
         Ok(Fraction { num, den })
     }
 
-    /// The numerator over a multiple of the denominator.
-    pub fn over_denominator(&self, fraction: &Fraction, multiple: &Poly) -> Result<Poly, Obstacle> {
-        let missing = exact(multiple.div_exact(&fraction.den, self.work())?)?;
-        self.reduce(&fraction.num.mul(&missing, self.work())?)
+    /// The numerators over the least common denominator, and that.
+    pub fn over_common_denominator<'f>(
+        &self,
+        fractions: impl IntoIterator<Item = &'f Fraction> + Clone,
+    ) -> Result<(Vec<Poly>, Poly), Obstacle> {
+        let mut denominators = fractions.clone().into_iter().map(|fraction| &fraction.den);
+        let common = denominators.try_fold(Poly::one(), |common, other| common.lcm(other, self.limit()))?;
+        let over = |fraction: &Fraction| {
+            let missing = exact(common.div_exact(&fraction.den, self.limit())?)?;
+            self.reduce(&fraction.num.mul(&missing, self.limit())?)
+        };
+        let numerators = fractions.into_iter().map(over).collect::<Result<_, Obstacle>>()?;
+        Ok((numerators, common))
     }
 
     /// `a + b`.
@@ -71,20 +80,20 @@ impl Field<'_> {
             return self.of_number(&(&a + &b));
         }
         if a.den == b.den {
-            return self.fraction_of(&(&a.num + &b.num), &a.den);
+            return self.quotient(&(&a.num + &b.num), &a.den);
         }
         // Over the least common denominator, so that intermediate results stay small.
-        let common = a.den.gcd(&b.den, self.work())?;
-        let left = exact(a.den.div_exact(&common, self.work())?)?;
-        let right = exact(b.den.div_exact(&common, self.work())?)?;
-        let num = &a.num.mul(&right, self.work())? + &b.num.mul(&left, self.work())?;
-        let den = a.den.mul(&right, self.work())?;
-        self.fraction_of(&num, &den)
+        let common = a.den.gcd(&b.den, self.limit())?;
+        let left = exact(a.den.div_exact(&common, self.limit())?)?;
+        let right = exact(b.den.div_exact(&common, self.limit())?)?;
+        let num = &a.num.mul(&right, self.limit())? + &b.num.mul(&left, self.limit())?;
+        let den = a.den.mul(&right, self.limit())?;
+        self.quotient(&num, &den)
     }
 
     /// `a - b`.
     pub fn sub(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
-        self.add(a, &negated(b))
+        self.add(a, &b.opposite())
     }
 
     /// `a * b`.
@@ -101,21 +110,21 @@ impl Field<'_> {
         if let Some((a, b)) = numbers(a, b) {
             return self.of_number(&(&a * &b));
         }
-        let num = a.num.mul(&b.num, self.work())?;
-        let den = a.den.mul(&b.den, self.work())?;
-        self.fraction_of(&num, &den)
+        let num = a.num.mul(&b.num, self.limit())?;
+        let den = a.den.mul(&b.den, self.limit())?;
+        self.quotient(&num, &den)
     }
 
     /// `a / b`.
     pub fn div(&self, a: &Fraction, b: &Fraction) -> Result<Fraction, Obstacle> {
-        let num = a.num.mul(&b.den, self.work())?;
-        let den = a.den.mul(&b.num, self.work())?;
-        self.fraction_of(&num, &den)
+        let num = a.num.mul(&b.den, self.limit())?;
+        let den = a.den.mul(&b.num, self.limit())?;
+        self.quotient(&num, &den)
     }
 
     /// The fraction of a computed number.
     fn of_number(&self, value: &Rational) -> Result<Fraction, Obstacle> {
-        self.work().spend(1 + value.bits() / 64)?;
+        self.limit().spend(1 + value.bits() / 64)?;
         Ok(Fraction::constant(value))
     }
 
@@ -132,7 +141,7 @@ impl Field<'_> {
         let times = u32::try_from(exponent.unsigned_abs()).map_err(|_| Obstacle::TooLarge)?;
         let num = self.repeated_product(&a.num, times)?;
         let den = self.repeated_product(&a.den, times)?;
-        if exponent < 0 { self.fraction_of(&den, &num) } else { self.fraction_of(&num, &den) }
+        if exponent < 0 { self.quotient(&den, &num) } else { self.quotient(&num, &den) }
     }
 
     /// A power, reduced at each step, so that relations keep it small.
@@ -142,9 +151,9 @@ impl Field<'_> {
         }
         let mut result = base.clone();
         for bit in (0..u32::BITS - 1 - times.leading_zeros()).rev() {
-            result = self.reduce(&result.mul(&result, self.work())?)?;
+            result = self.reduce(&result.mul(&result, self.limit())?)?;
             if times >> bit & 1 == 1 {
-                result = self.reduce(&result.mul(base, self.work())?)?;
+                result = self.reduce(&result.mul(base, self.limit())?)?;
             }
         }
         Ok(result)
@@ -163,7 +172,7 @@ impl Field<'_> {
             });
             let Some(variable) = next else { return Ok(poly) };
             if let Some(relation) = &kernels[variable].relation {
-                poly = poly.reduce_power(variable, relation.degree, &relation.value, self.work())?;
+                poly = poly.reduce_power(variable, relation.degree, &relation.value, self.limit())?;
             }
             above = variable;
         }
@@ -177,12 +186,12 @@ impl Field<'_> {
         let algebraic = |poly: &Poly| poly.variables().iter().any(|v| kernels[*v].relation.is_some());
         // A relation of roots that were not cleared may hide a common factor.
         let hidden = !a.is_constant() && !b.is_constant() && (algebraic(&a) || algebraic(&b));
-        Ok(hidden || !a.gcd(&b, self.work())?.is_constant())
+        Ok(hidden || !a.gcd(&b, self.limit())?.is_constant())
     }
 
     /// The denominator of the inverse: it vanishes wherever the polynomial does.
     fn cleared(&self, poly: &Poly) -> Result<Poly, Obstacle> {
-        Ok(self.fraction_of(&Poly::one(), poly)?.den)
+        Ok(self.quotient(&Poly::one(), poly)?.den)
     }
 
     /// The factor that clears the last quadratic kernel from a denominator.

@@ -64,18 +64,13 @@ impl Fraction {
     /// `-self`
     #[must_use]
     pub fn opposite(&self) -> Self {
-        negated(self)
+        Self { num: -&self.num, den: self.den.clone() }
     }
 
     /// A measure of how unwieldy this is as a pivot.
     pub(crate) fn weight(&self) -> usize {
         self.num.term_count() + self.den.term_count()
     }
-}
-
-/// `-a`.
-pub(in crate::tower) fn negated(a: &Fraction) -> Fraction {
-    Fraction { num: -&a.num, den: a.den.clone() }
 }
 
 /// A positive rational that makes the polynomial primitive, and the primitive polynomial.

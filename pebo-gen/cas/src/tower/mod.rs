@@ -55,7 +55,7 @@ pub use sign::Signs;
 
 use coprime::CoprimeBase;
 use kernel::absolute_angles::absolute_angles;
-use kernel::angle::{InverseAngle, Pair};
+use kernel::range::{InverseAngle, Pair};
 use kernel::units::{Atoms, Family, Units};
 use kernel::{AlgebraicRelation, Kernel, Kernels, ProductRoot};
 use sign::SignMemory;
@@ -163,10 +163,6 @@ impl<'a> Field<'a> {
         Err(Obstacle::TooLarge)
     }
 
-    fn work(&self) -> &Work {
-        &self.work
-    }
-
     /// The arena of the expressions.
     pub fn arena(&self) -> &'a Arena {
         self.arena
@@ -224,12 +220,7 @@ impl<'a> Field<'a> {
 
     /// A polynomial over the kernels as a fraction.
     pub fn of_polynomial(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        self.fraction_of(poly, &Poly::one())
-    }
-
-    /// The fraction of two polynomials over the kernels.
-    pub fn quotient(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
-        self.fraction_of(num, den)
+        self.quotient(poly, &Poly::one())
     }
 
     /// The work limit, for polynomial arithmetic on numerators.

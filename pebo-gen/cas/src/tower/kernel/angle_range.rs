@@ -5,7 +5,7 @@ use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 
 use super::range::Range;
-use crate::tower::fraction::{Fraction, negated};
+use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
 use crate::tower::{Field, Obstacle};
 
@@ -72,7 +72,7 @@ impl Field<'_> {
             return Ok(None);
         }
         let Some(low) = self.greatest_bound(angle)? else { return Ok(None) };
-        let Some((high, inside)) = self.greatest_bound(&negated(angle))? else { return Ok(None) };
+        let Some((high, inside)) = self.greatest_bound(&angle.opposite())? else { return Ok(None) };
         Ok(Some(Range::halves(low, (-high, inside))))
     }
 

@@ -8,12 +8,12 @@
 use std::collections::BTreeMap;
 
 use crate::graph::expr::Expr;
-use crate::linear::rational_matrix;
+use crate::linear::{Matrix, rational_matrix};
 use crate::poly::{Monomial, Poly};
 use crate::{Integer, Rational};
 
 use super::units::Multiple;
-use crate::tower::fraction::{Fraction, negated, primitive};
+use crate::tower::fraction::{Fraction, primitive};
 use crate::tower::{Family, Field, Obstacle};
 
 /// The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one atom.
@@ -94,12 +94,12 @@ impl Field<'_> {
             }
             let den = argument.den.scale(&scale);
             for term in remainder {
-                pieces.push(self.fraction_of(&term, &den)?);
+                pieces.push(self.quotient(&term, &den)?);
             }
         } else {
             for (monomial, coefficient) in argument.num.terms() {
                 let term = Poly::from_terms([(monomial, coefficient.clone())])?;
-                pieces.push(self.fraction_of(&term, &argument.den)?);
+                pieces.push(self.quotient(&term, &argument.den)?);
             }
         }
         Ok(pieces)
@@ -132,7 +132,7 @@ impl Field<'_> {
         let mut key = Fraction { num, den };
         if key.num.leading_coefficient().is_negative() {
             factor = -&factor;
-            key = negated(&key);
+            key = key.opposite();
         }
         Ok((self.show(&key), key, factor))
     }
@@ -143,14 +143,7 @@ impl Field<'_> {
         wanted: &Fraction,
         atoms: &[(Expr, Fraction)],
     ) -> Result<Option<Vec<(Expr, Rational)>>, Obstacle> {
-        let mut common = wanted.den.clone();
-        for (_, atom) in atoms {
-            common = common.lcm(&atom.den, self.limit())?;
-        }
-        let mut columns = Vec::with_capacity(atoms.len() + 1);
-        for fraction in atoms.iter().map(|(_, atom)| atom).chain([wanted]) {
-            columns.push(self.over_denominator(fraction, &common)?);
-        }
+        let (columns, _) = self.over_common_denominator(atoms.iter().map(|(_, atom)| atom).chain([wanted]))?;
         let mut rows: BTreeMap<Monomial, Vec<Rational>> = BTreeMap::new();
         for (column, poly) in columns.iter().enumerate() {
             for (monomial, coefficient) in poly.terms() {
@@ -158,8 +151,8 @@ impl Field<'_> {
                 row[column] = Rational::from(coefficient.clone());
             }
         }
-        let rows: Vec<_> = rows.into_values().collect();
-        let Some(solution) = rational_matrix::solution(&rows, atoms.len(), self.limit())? else { return Ok(None) };
+        let matrix = Matrix::new(rows.into_values().collect());
+        let Some(solution) = rational_matrix::solution(&matrix, atoms.len(), self.limit())? else { return Ok(None) };
         let used = atoms.iter().zip(solution).filter(|(_, share)| !share.is_zero());
         Ok(Some(used.map(|((atom, _), share)| (*atom, share)).collect()))
     }

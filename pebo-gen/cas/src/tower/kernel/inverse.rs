@@ -11,9 +11,8 @@ use crate::graph::function::Function;
 use crate::number::interval::Precision;
 use crate::number::rational::half;
 
-use super::angle::{InverseAngle, Pair};
-use super::range::Range;
-use crate::tower::fraction::{Fraction, negated};
+use super::range::{InverseAngle, Pair, Range};
+use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 /// Angles that a new one is compared with.
@@ -146,7 +145,7 @@ impl Field<'_> {
     fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[InverseAngle]) -> Result<bool, Obstacle> {
         let mut total = self.repeated(pair, u64::from(guess.own.unsigned_abs()))?;
         let mut within = range.times(i64::from(guess.own));
-        let opposite = |(sin, cos): Pair| (negated(&sin), cos);
+        let opposite = |(sin, cos): Pair| (sin.opposite(), cos);
         for (index, share) in &guess.shares {
             let other = self.repeated(&known[*index].pair, u64::from(share.unsigned_abs()))?;
             total = self.sum_of_angles(&total, &if *share > 0 { opposite(other) } else { other })?;
@@ -212,7 +211,7 @@ mod tests {
     fn angles_with_the_same_sine_and_cosine_may_differ_by_a_turn() {
         let arena = Arena::new();
         let field = Field::over(&arena, &Facts::new(), &[]).unwrap();
-        let half_turn = (Fraction::zero(), negated(&Fraction::one()));
+        let half_turn = (Fraction::zero(), Fraction::one().opposite());
         let guess = Guess { own: 1, shares: Vec::new(), twelfths: 12 };
         let is_half_turn = |n: i32| field.holds(&guess, &half_turn, &Range::point(ratio(n, 1)), &[]).unwrap();
         assert!(is_half_turn(1) && !is_half_turn(-1) && !is_half_turn(3));

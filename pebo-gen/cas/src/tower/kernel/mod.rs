@@ -3,7 +3,6 @@
 mod absolute_value;
 
 pub(super) mod absolute_angles;
-pub(super) mod angle;
 mod angle_range;
 mod argument;
 mod cyclotomic;

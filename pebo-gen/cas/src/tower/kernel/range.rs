@@ -1,9 +1,21 @@
-//! Ranges of angles, in multiples of pi.
+//! Angles as values: sine, cosine, and the range, in multiples of pi.
 
 use crate::Rational;
 use crate::graph::function::Function;
 
+use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
+
+/// Sine and cosine of one angle.
+pub(in crate::tower) type Pair = (Fraction, Fraction);
+
+/// An angle with its sine and cosine.
+#[derive(Clone, Debug)]
+pub(in crate::tower) struct InverseAngle {
+    pub value: Fraction,
+    pub pair: Pair,
+    pub range: Range,
+}
 
 /// An interval with open or closed ends.
 #[derive(Clone, Debug)]
