@@ -14,8 +14,6 @@ use graph::Graph;
 const CIRCLES: &[(&str, usize)] = &[
     ("emit/layout/mod.rs", 3),
     ("emit/module/mod.rs", 2),
-    ("cas/tower/mod.rs", 14),
-    ("cas/poly/multiply.rs", 6),
     ("analysis/advice/remarks.rs", 4),
     ("model/formula/parser.rs", 2),
     ("model/rust/functions.rs", 2),

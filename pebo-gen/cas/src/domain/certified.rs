@@ -11,11 +11,13 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 
 use crate::Rational;
 use crate::graph::arena::Arena;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::{Expr, Symbol};
+use crate::linear::elimination::{PlacedRow, Reach, by_columns, eliminate};
 use crate::number::interval::{Interval, Precision};
 
 /// Steps of Newton's method in floating point: from afar it halves the error, then doubles the digits.
@@ -138,22 +140,19 @@ impl System {
             row.iter_mut().zip(scale).for_each(|(slope, scale)| *slope *= scale);
         }
         let greatest = rows.iter().flatten().fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let mut chosen = Vec::new();
-        while !rows.is_empty() {
-            let all = rows.iter().enumerate().flat_map(|(i, row)| row.iter().enumerate().map(move |(j, s)| (i, j, *s)));
-            let (i, j, pivot) = all.max_by(|(_, _, a), (_, _, b)| a.abs().total_cmp(&b.abs()))?;
-            if pivot.abs() <= SMALL_PIVOT * greatest {
-                return None;
-            }
-            let row = rows.swap_remove(i);
-            for other in &mut rows {
-                let factor = other[j] / pivot;
-                other.iter_mut().zip(&row).for_each(|(entry, above)| *entry -= factor * above);
-                other[j] = 0.0;
-            }
-            chosen.push(j);
-        }
-        Some(chosen)
+        let choose = |rest: &[PlacedRow<f64>]| {
+            let entries =
+                rest.iter().enumerate().flat_map(|(i, (_, row))| row.iter().enumerate().map(move |(j, s)| (i, j, s)));
+            let (i, j, pivot) = entries.max_by(|(_, _, a), (_, _, b)| a.abs().total_cmp(&b.abs()))?;
+            (pivot.abs() > SMALL_PIVOT * greatest).then_some((i, j))
+        };
+        let clear = |other: &mut [f64], row: &[f64], column: usize| {
+            subtract(other, other[column] / row[column], row);
+            other[column] = 0.0;
+            Ok::<_, Infallible>(())
+        };
+        let Ok(found) = eliminate(rows, Reach::Below, choose, |row, _| Ok(row), clear);
+        found.rest.is_empty().then(|| found.pivots.iter().map(|pivot| pivot.column).collect())
     }
 
     /// Enclosures of the dependent values, in each of which a solution was proved.
@@ -247,23 +246,23 @@ fn inverse(mut rows: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     for (i, row) in rows.iter_mut().enumerate() {
         row.extend((0..size).map(|j| if i == j { 1.0 } else { 0.0 }));
     }
-    for column in 0..size {
-        let best = (column..size).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
-        rows.swap(column, best);
-        let pivot = rows[column][column];
-        if pivot == 0.0 || !pivot.is_finite() {
-            return None;
-        }
-        rows[column].iter_mut().for_each(|entry| *entry /= pivot);
-        let above = rows[column].clone();
-        for (other, row) in rows.iter_mut().enumerate() {
-            if other != column {
-                let factor = row[column];
-                row.iter_mut().zip(&above).for_each(|(entry, above)| *entry -= factor * above);
-            }
-        }
-    }
-    Some(rows.into_iter().map(|mut row| row.split_off(size)).collect())
+    let largest = |rest: &[PlacedRow<f64>], column: usize| {
+        let sizes = rest.iter().map(|(_, row)| row[column].abs()).enumerate();
+        let (index, size) = sizes.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (size != 0.0 && size.is_finite()).then_some(index)
+    };
+    let over = |row: Vec<f64>, column: usize| Ok(row.iter().map(|entry| entry / row[column]).collect());
+    let clear = |other: &mut [f64], row: &[f64], column: usize| {
+        subtract(other, other[column], row);
+        Ok::<_, Infallible>(())
+    };
+    let Ok(found) = eliminate(rows, Reach::All, by_columns(size, largest), over, clear);
+    found.rest.is_empty().then(|| found.pivots.into_iter().map(|mut pivot| pivot.row.split_off(size)).collect())
+}
+
+/// `row - factor * other`
+fn subtract(row: &mut [f64], factor: f64, other: &[f64]) {
+    row.iter_mut().zip(other).for_each(|(entry, other)| *entry -= factor * other);
 }
 
 #[cfg(test)]

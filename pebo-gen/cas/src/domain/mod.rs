@@ -14,6 +14,7 @@ mod jump;
 pub mod manifold;
 pub mod reducible;
 pub(crate) mod solution;
+mod solving;
 pub mod zero;
 
 use std::cell::Cell;

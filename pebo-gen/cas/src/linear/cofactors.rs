@@ -4,9 +4,7 @@
 //! are made by minors, row by row and without a division, so that nothing swells before it cancels: elimination over
 //! fractions makes the same entries with a greatest common divisor at every step.
 
-use std::collections::BTreeMap;
-
-use super::minors::larger_minors;
+use super::matrix::Matrix;
 use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 
@@ -30,50 +28,24 @@ pub(crate) fn solutions(
     if !rows.iter().all(plain) {
         return Ok(None);
     }
-    let matrix: Vec<Vec<&Poly>> =
-        rows.iter().map(|row| row[..unknowns].iter().map(Fraction::numerator).collect()).collect();
-    // By row and column.
-    let cofactors = (0..unknowns).map(|row| without(field, &matrix, row)).collect::<Result<Vec<_>, _>>()?;
+    let numerators = |row: &Vec<Fraction>| row[..unknowns].iter().map(|entry| entry.numerator().clone()).collect();
+    let matrix = Matrix::new(rows.iter().map(numerators).collect());
+    let cofactors = matrix.cofactors(field.limit())?;
     let mut determinant = Poly::zero();
-    for (entry, cofactor) in matrix[0].iter().zip(&cofactors[0]) {
+    for (entry, cofactor) in matrix.rows()[0].iter().zip(&cofactors.rows()[0]) {
         determinant = &determinant + &entry.mul(cofactor, field.limit())?;
     }
     let determinant = field.of_polynomial(&determinant)?;
     if determinant.is_zero() {
         return Ok(None);
     }
-    let mut solutions = Vec::new();
-    for right in unknowns..rows[0].len() {
-        let mut solution = Vec::new();
-        for column in 0..unknowns {
-            let mut total = Fraction::zero();
-            for (row, cofactors) in rows.iter().zip(&cofactors) {
-                let product = field.mul(&row[right], &field.of_polynomial(&cofactors[column])?)?;
-                total = field.add(&total, &product)?;
-            }
-            solution.push(field.div(&total, &determinant)?);
-        }
-        solutions.push(solution);
-    }
-    Ok(Some(solutions))
-}
-
-/// The cofactors of a row.
-fn without(field: &Field<'_>, matrix: &[Vec<&Poly>], row: usize) -> Result<Vec<Poly>, Obstacle> {
-    let size = matrix.len();
-    // By the set of their columns, a bit each.
-    let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
-    for (_, entries) in matrix.iter().enumerate().filter(|(other, _)| *other != row) {
-        let larger = larger_minors(&minors, entries, field.limit())?;
-        minors = BTreeMap::new();
-        minors.extend(larger.into_iter().filter(|(_, minor)| !minor.is_zero()));
-    }
-    let all = (1_u64 << size) - 1;
-    let signed = |column: usize| {
-        let minor = minors.remove(&(all & !(1 << column))).unwrap_or_default();
-        if (row + column) % 2 == 1 { -&minor } else { minor }
+    let cofactors = cofactors.transpose().try_map(|cofactor| field.of_polynomial(cofactor))?;
+    let solution = |right: usize| {
+        let right = || rows.iter().map(|row| &row[right]);
+        let over = |cofactors: &Vec<Fraction>| field.div(&field.dot(right(), cofactors)?, &determinant);
+        cofactors.rows().iter().map(over).collect()
     };
-    Ok((0..size).map(signed).collect())
+    (unknowns..rows[0].len()).map(solution).collect::<Result<_, _>>().map(Some)
 }
 
 #[cfg(test)]
@@ -105,7 +77,7 @@ mod tests {
             let fractions: Vec<Fraction> = exprs.iter().map(|e| field.fraction(*e).unwrap()).collect();
             let rows: Vec<Vec<Fraction>> = fractions.chunks(size + 2).map(<[Fraction]>::to_vec).collect();
             let solved = solutions(&field, &rows, size).unwrap().expect("a square system");
-            let (echelon, _) = Echelon::of(&field, rows, size).unwrap();
+            let (echelon, _) = Echelon::of(&field, Matrix::new(rows), size).unwrap();
             for (column, row) in echelon.rows() {
                 for right in 0..2 {
                     assert_eq!(solved[right][column], row[size + right], "{size}");

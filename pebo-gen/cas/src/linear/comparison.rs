@@ -12,7 +12,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Echelon, solve};
+use super::echelon::Echelon;
+use super::fractions::solve;
+use super::matrix::Matrix;
 use crate::graph::expr::{Expr, Symbol};
 use crate::poly::{Monomial, Poly};
 use crate::tower::{Field, Fraction, Obstacle};
@@ -24,19 +26,9 @@ pub fn combine(
     basis: &[Expr],
     x: &BTreeSet<Symbol>,
 ) -> Result<Option<Vec<Fraction>>, Obstacle> {
-    let hidden: Vec<u32> = field.kernels_of(x).into_iter().collect();
-    let mut fractions = basis.iter().map(|b| field.fraction(*b)).collect::<Result<Vec<_>, _>>()?;
-    fractions.push(field.fraction(target)?);
-    // One row for each monomial in the hidden kernels, the target in the last column.
-    let columns = fractions.len();
-    let mut rows: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
-    for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
-        for (monomial, coefficient) in numerator.collect(&hidden) {
-            let row = rows.entry(monomial).or_insert_with(|| vec![Fraction::zero(); columns]);
-            row[column] = field.of_polynomial(&coefficient)?;
-        }
-    }
-    solve(field, rows.into_values().collect(), basis.len())
+    // The target in the last column.
+    let row = [basis, &[target]].concat();
+    solve(field, equations(field, &[row], x)?, basis.len())
 }
 
 /// The combinations, with coefficients free of x, in which the symbols to cancel no longer occur; a basis of them.
@@ -48,22 +40,15 @@ pub fn cancelling(
     x: &BTreeSet<Symbol>,
     cancel: &BTreeSet<Symbol>,
 ) -> Result<Vec<Vec<Fraction>>, Obstacle> {
-    let hidden: Vec<u32> = field.kernels_of(x).into_iter().collect();
     let gone = field.kernels_of(cancel);
     let fractions = exprs.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
     if fractions.iter().any(|fraction| fraction.denominator().variables().iter().any(|v| gone.contains(v))) {
         return Err(Obstacle::Kernel("a denominator that is to cancel".to_owned()));
     }
-    let mut rows: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
-    for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
-        for (monomial, coefficient) in numerator.collect(&hidden) {
-            if monomial.powers().iter().any(|(kernel, _)| gone.contains(kernel)) {
-                let row = rows.entry(monomial).or_insert_with(|| vec![Fraction::zero(); exprs.len()]);
-                row[column] = field.of_polynomial(&coefficient)?;
-            }
-        }
-    }
-    let (echelon, _) = Echelon::of(field, rows.into_values().collect(), exprs.len())?;
+    let is_gone = |monomial: &Monomial| monomial.powers().iter().any(|(kernel, _)| gone.contains(kernel));
+    let hidden: Vec<u32> = field.kernels_of(x).into_iter().collect();
+    let rows = coefficients(field, &fractions, &hidden, is_gone)?;
+    let (echelon, _) = Echelon::of(field, Matrix::new(rows), exprs.len())?;
     Ok(echelon.null_space())
 }
 
@@ -84,30 +69,35 @@ pub fn equations(
     field: &Field<'_>,
     rows: &[Vec<Expr>],
     symbols: &BTreeSet<Symbol>,
-) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+) -> Result<Matrix<Fraction>, Obstacle> {
     let moving: Vec<u32> = field.kernels_of(symbols).into_iter().collect();
-    let columns = rows.first().map_or(0, Vec::len);
     let mut matrix = Vec::new();
-    for row in rows {
-        let fractions = row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
-        let mut equations: BTreeMap<Monomial, Vec<Fraction>> = BTreeMap::new();
-        for (column, numerator) in over_common_denominator(field, &fractions)?.iter().enumerate() {
-            for (monomial, coefficient) in numerator.collect(&moving) {
-                let equation = equations.entry(monomial).or_insert_with(|| vec![Fraction::zero(); columns]);
-                equation[column] = field.of_polynomial(&coefficient)?;
-            }
-        }
-        matrix.extend(equations.into_values());
+    for row in field.matrix(rows)?.rows() {
+        matrix.extend(coefficients(field, row, &moving, |_| true)?);
     }
-    Ok(matrix)
+    Ok(Matrix::new(matrix))
 }
 
-/// The numerators of fractions over their least common denominator.
-fn over_common_denominator(field: &Field<'_>, fractions: &[Fraction]) -> Result<Vec<Poly>, Obstacle> {
-    let work = field.limit();
-    let mut common = Poly::one();
-    for fraction in fractions {
-        common = common.lcm(fraction.denominator(), work)?;
+/// The coefficients of fractions over their common denominator: a row for each wanted monomial in the moving kernels.
+fn coefficients(
+    field: &Field<'_>,
+    fractions: &[Fraction],
+    moving: &[u32],
+    is_wanted: impl Fn(&Monomial) -> bool,
+) -> Result<Vec<Vec<Fraction>>, Obstacle> {
+    let (numerators, _) = field.over_common_denominator(fractions)?;
+    let wanted = |numerator: &Poly| numerator.collect(moving).into_iter().filter(|(m, _)| is_wanted(m)).collect();
+    Ok(by_monomials(field, &numerators.iter().map(wanted).collect::<Vec<_>>())?.into_rows())
+}
+
+/// A row for each monomial, of the coefficients that it has in collected polynomials, a column for each.
+pub fn by_monomials(field: &Field<'_>, columns: &[Vec<(Monomial, Poly)>]) -> Result<Matrix<Fraction>, Obstacle> {
+    let mut rows: BTreeMap<&Monomial, Vec<Fraction>> = BTreeMap::new();
+    for (column, collected) in columns.iter().enumerate() {
+        for (monomial, coefficient) in collected {
+            let row = rows.entry(monomial).or_insert_with(|| vec![Fraction::zero(); columns.len()]);
+            row[column] = field.of_polynomial(coefficient)?;
+        }
     }
-    fractions.iter().map(|fraction| field.over_denominator(fraction, &common)).collect()
+    Ok(Matrix::new(rows.into_values().collect()))
 }

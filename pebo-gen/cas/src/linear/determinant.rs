@@ -1,13 +1,15 @@
 //! Determinants over the field of fractions.
 //!
-//! In: a square matrix, or one with more columns than rows. Out: its determinant, or its largest minors. Rows over a common denominator have polynomials for entries; their minors
-//! of the first rows are computed once each, row by row, without a division: fractions of fractions, which elimination
-//! makes, would swell long before they cancel. Elimination takes over if there are too many minors.
+//! In: a square matrix, or one with more columns than rows. Out: its determinant, or its largest minors. Rows over a
+//! common denominator have polynomials for entries; their minors of the first rows are computed once each, row by row,
+//! without a division: fractions of fractions, which elimination makes, would swell long before they cancel. Elimination
+//! takes over if there are too many minors.
 
-use std::collections::BTreeMap;
-
-use super::minors::larger_minors;
-use super::{numbers_of, rational_matrix, subtract};
+use super::elimination::{PlacedRow, Reach, eliminate, first};
+use super::fractions::subtract;
+use super::matrix::Matrix;
+use super::minors::{Minors, larger, smallest};
+use super::rational_matrix;
 use crate::poly::Poly;
 use crate::tower::{Field, Fraction, Obstacle};
 
@@ -15,57 +17,40 @@ use crate::tower::{Field, Fraction, Obstacle};
 const MOST_MINORS: usize = 256;
 
 /// The determinant of a square matrix.
-pub fn determinant(field: &Field<'_>, rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
-    if let Some(numbers) = numbers_of(&rows) {
+pub fn determinant(field: &Field<'_>, matrix: Matrix<Fraction>) -> Result<Fraction, Obstacle> {
+    if let Some(numbers) = matrix.numbers() {
         return Ok(Fraction::constant(&rational_matrix::determinant(&numbers, field.limit())?));
     }
-    match by_minors(field, &rows)? {
-        Some(total) => Ok(total),
-        None => by_elimination(field, rows),
+    match all_minors(field, &matrix)? {
+        Some((minors, denominator)) => {
+            let total = minors.into_values().next().unwrap_or_default();
+            field.div(&field.of_polynomial(&total)?, &denominator)
+        }
+        None => by_elimination(field, matrix),
     }
 }
 
 /// The numerators of the minors of all rows that are not zero, over one denominator; an obstacle if there are too many.
-pub fn largest_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Vec<Poly>, Obstacle> {
-    let minors = all_minors(field, rows)?.ok_or(Obstacle::TooLarge)?;
-    Ok(minors.numerators.into_values().collect())
+pub fn largest_minors(field: &Field<'_>, matrix: &Matrix<Fraction>) -> Result<Vec<Poly>, Obstacle> {
+    let (minors, _) = all_minors(field, matrix)?.ok_or(Obstacle::TooLarge)?;
+    Ok(minors.into_values().collect())
 }
 
-/// By minors; none if there are too many.
-fn by_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Fraction>, Obstacle> {
-    let Some(Minors { numerators, denominator }) = all_minors(field, rows)? else { return Ok(None) };
-    let total = numerators.into_values().next().unwrap_or_default();
-    Ok(Some(field.div(&field.of_polynomial(&total)?, &denominator)?))
-}
-
-/// The minors of all rows that are not zero.
-struct Minors {
-    /// By the set of their columns, a bit each.
-    numerators: BTreeMap<u64, Poly>,
-    /// The denominator of all.
-    denominator: Fraction,
-}
-
-/// The minors of all rows; none if there are too many.
-fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Minors>, Obstacle> {
-    if rows.iter().map(Vec::len).chain([rows.len()]).any(|size| size >= u64::BITS as usize) {
+/// The numerators of the minors of all rows that are not zero, and the denominator of all; none if there are too many.
+fn all_minors(field: &Field<'_>, matrix: &Matrix<Fraction>) -> Result<Option<(Minors<Poly>, Fraction)>, Obstacle> {
+    if matrix.height().max(matrix.width()) >= u64::BITS as usize {
         return Ok(None);
     }
-    let work = field.limit();
     let mut denominator = Fraction::one();
-    let mut minors = BTreeMap::from([(0_u64, Poly::one())]);
-    for row in rows {
-        let mut common = Poly::one();
-        for entry in row {
-            common = common.lcm(entry.denominator(), work)?;
-        }
+    let mut minors = smallest(field.limit());
+    for row in matrix.rows() {
+        let (entries, common) = field.over_common_denominator(row)?;
         denominator = field.mul(&denominator, &field.of_polynomial(&common)?)?;
-        let entries = row.iter().map(|entry| field.over_denominator(entry, &common)).collect::<Result<Vec<_>, _>>()?;
-        let larger = larger_minors(&minors, &entries.iter().collect::<Vec<_>>(), work)?;
+        let larger = larger(field.limit(), &minors, &entries)?;
         if larger.len() > MOST_MINORS {
             return Ok(None);
         }
-        minors = BTreeMap::new();
+        minors = Minors::new();
         for (columns, minor) in larger {
             let minor = field.of_polynomial(&minor)?;
             if !minor.is_zero() {
@@ -73,27 +58,26 @@ fn all_minors(field: &Field<'_>, rows: &[Vec<Fraction>]) -> Result<Option<Minors
             }
         }
     }
-    Ok(Some(Minors { numerators: minors, denominator }))
+    Ok(Some((minors, denominator)))
 }
 
 /// By elimination: for matrices whose entries are mostly zero or one and the others long, as that of Hurwitz.
-pub fn by_elimination(field: &Field<'_>, mut rows: Vec<Vec<Fraction>>) -> Result<Fraction, Obstacle> {
-    let mut total = Fraction::one();
-    for column in 0..rows.len() {
-        let Some(pivot) = (column..rows.len()).find(|row| !rows[*row][column].is_zero()) else {
-            return Ok(Fraction::zero());
-        };
-        if pivot != column {
-            rows.swap(pivot, column);
-            total = total.opposite();
-        }
-        total = field.mul(&total, &rows[column][column])?;
-        let (above, below) = rows.split_at_mut(column + 1);
-        let pivot_row = &above[column];
-        for row in below {
-            let factor = field.div(&row[column], &pivot_row[column])?;
-            subtract(field, &mut row[column..], &factor, &pivot_row[column..])?;
-        }
+pub fn by_elimination(field: &Field<'_>, matrix: Matrix<Fraction>) -> Result<Fraction, Obstacle> {
+    let size = matrix.height();
+    // A column without a pivot ends it.
+    let next = |rest: &[PlacedRow<Fraction>]| {
+        let column = size - rest.len();
+        first(Fraction::is_zero)(rest, column).map(|index| (index, column))
+    };
+    let clear = |other: &mut [Fraction], row: &[Fraction], column: usize| {
+        let factor = field.div(&other[column], &row[column])?;
+        subtract(field, &mut other[column..], &factor, &row[column..])
+    };
+    let found = eliminate(matrix.into_rows(), Reach::Below, next, |row, _| Ok(row), clear)?;
+    if !found.rest.is_empty() {
+        return Ok(Fraction::zero());
     }
-    Ok(total)
+    let pivots = found.pivots.iter().map(|pivot| &pivot.row[pivot.column]);
+    let total = pivots.into_iter().try_fold(Fraction::one(), |total, pivot| field.mul(&total, pivot))?;
+    Ok(if found.odd { total.opposite() } else { total })
 }

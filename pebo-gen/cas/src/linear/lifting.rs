@@ -186,7 +186,7 @@ fn inverse(prime: &PrimeField, matrix: Vec<Vec<Residue>>) -> Option<Vec<Vec<Resi
     }
     // As many rows as columns: if each of these has a pivot, none is beyond.
     let is_regular = rows.pivots().eq(0..size);
-    is_regular.then(|| rows.reduced().into_iter().map(|(_, mut row)| row.split_off(size)).collect())
+    is_regular.then(|| rows.reduced().rows.into_iter().map(|(_, mut row)| row.split_off(size)).collect())
 }
 
 #[cfg(test)]

@@ -1,36 +1,36 @@
 //! Lower bounds of ranks by enclosures: elimination whose pivots exclude zero.
 //!
-//! Separate from exact elimination, since no entry is ever known to be zero here: one that may be is passed over, the
-//! largest is the pivot because its quotients widen least, and each step may fail.
+//! No entry is ever known to be zero here: one that may be is passed over, the largest is the pivot because its quotients
+//! widen least, and each step may fail.
 
+use super::elimination::{PlacedRow, Reach, by_columns, eliminate};
 use crate::Budget;
 use crate::number::interval::{Interval, Precision};
+use crate::poly::TooLarge;
 
 /// Pivots of provably independent rows, as many as the elimination finds, in the order of their columns; none if an
 /// entry is too large to be represented, or the budget ends.
 ///
 /// A row more or less than these proves nothing: an enclosure that contains zero may enclose another number.
 pub fn pivots(rows: Vec<Vec<Interval>>, columns: usize, precision: Precision, budget: &Budget) -> Option<Vec<usize>> {
-    let mut rest: Vec<(usize, Vec<Interval>)> = rows.into_iter().enumerate().collect();
-    let mut chosen = Vec::new();
-    for column in 0..columns {
+    let largest = |rest: &[PlacedRow<Interval>], column: usize| {
         let candidates = rest.iter().enumerate().filter(|(_, (_, row))| !row[column].contains_zero());
         let best = candidates.max_by(|(_, (_, a)), (_, (_, b))| size(&a[column]).total_cmp(&size(&b[column])));
-        let Some((place, _)) = best else { continue };
-        let (index, pivot) = rest.swap_remove(place);
-        chosen.push(index);
-        for (_, row) in &mut rest {
-            // A product and a difference for each entry.
-            if !budget.take(precision.steps().saturating_mul(2 * (columns - column) as u64)) {
-                return None;
-            }
-            let factor = row[column].div(&pivot[column], precision)?;
-            for other in column..columns {
-                row[other] = row[other].sub(&factor.mul(&pivot[other], precision)?, precision)?;
-            }
+        best.map(|(index, _)| index)
+    };
+    let clear = |row: &mut [Interval], pivot: &[Interval], column: usize| {
+        // A product and a difference for each entry.
+        let has_budget = budget.take(precision.steps().saturating_mul(2 * (columns - column) as u64));
+        let factor = row[column].div(&pivot[column], precision).filter(|_| has_budget).ok_or(TooLarge)?;
+        for other in column..columns {
+            let product = factor.mul(&pivot[other], precision);
+            let difference = product.and_then(|product| row[other].sub(&product, precision));
+            row[other] = difference.ok_or(TooLarge)?;
         }
-    }
-    Some(chosen)
+        Ok::<_, TooLarge>(())
+    };
+    let found = eliminate(rows, Reach::Below, by_columns(columns, largest), |row, _| Ok(row), clear);
+    Some(found.ok()?.pivots.iter().map(|pivot| pivot.place).collect())
 }
 
 fn size(value: &Interval) -> f64 {

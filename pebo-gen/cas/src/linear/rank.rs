@@ -4,7 +4,9 @@
 //! bound almost everywhere if the formulas are analytic there; and by exact algebra the vectors that every row provably
 //! annihilates.
 
-use super::Echelon;
+use super::echelon::Echelon;
+use super::elimination::{PlacedRow, Reach, eliminate};
+use super::fractions::subtract;
 use super::pivots::pivots;
 use crate::domain::zero::is_zero;
 use crate::graph::enclosure::Point;
@@ -42,28 +44,24 @@ pub fn full_rank_throughout(
     rows: &[Vec<Expr>],
     columns: usize,
 ) -> Result<bool, Obstacle> {
-    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let field = Field::over(arena, &domain.facts, &entries)?;
-    let fractions = |row: &Vec<Expr>| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>();
-    let mut rest: Vec<Vec<Fraction>> = rows.iter().map(fractions).collect::<Result<_, _>>()?;
+    let field = Field::over(arena, &domain.facts, &rows.concat())?;
     let vanishes_nowhere =
         |entry: &Fraction| entry.to_constant().is_some() || domain.implies(arena, field.show(entry), Relation::NonZero);
-    for _ in 0..columns {
-        let mut entries: Vec<(usize, usize)> =
-            (0..rest.len()).flat_map(|row| (0..columns).map(move |column| (row, column))).collect();
-        entries.retain(|(row, column)| !rest[*row][*column].is_zero());
-        entries.sort_by_key(|(row, column)| rest[*row][*column].weight());
-        let pivot = entries.into_iter().find(|(row, column)| vanishes_nowhere(&rest[*row][*column]));
-        let Some((row, column)) = pivot else { return Ok(false) };
-        let row = rest.swap_remove(row);
-        for other in rest.iter_mut().filter(|other| !other[column].is_zero()) {
-            let factor = field.div(&other[column], &row[column])?;
-            for (entry, above) in other.iter_mut().zip(&row) {
-                *entry = field.sub(entry, &field.mul(&factor, above)?)?;
-            }
-        }
-    }
-    Ok(true)
+    // The lightest first: to find that a pivot has no zeros takes long.
+    let choose = |rest: &[PlacedRow<Fraction>]| {
+        let entries = (0..rest.len()).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        let entry = |(row, column): &(usize, usize)| &rest[*row].1[*column];
+        let mut entries: Vec<(usize, usize)> = entries.filter(|place| !entry(place).is_zero()).collect();
+        entries.sort_by_key(|place| entry(place).weight());
+        entries.into_iter().find(|place| vanishes_nowhere(entry(place)))
+    };
+    let clear = |other: &mut [Fraction], row: &[Fraction], column: usize| {
+        let factor =
+            if other[column].is_zero() { Fraction::zero() } else { field.div(&other[column], &row[column])? };
+        subtract(&field, other, &factor, row)
+    };
+    let found = eliminate(field.matrix(rows)?.into_rows(), Reach::Below, choose, |row, _| Ok(row), clear)?;
+    Ok(found.pivots.len() == columns)
 }
 
 /// True if a matrix, whose entries are given row by row, provably has full column rank at a point.
@@ -74,16 +72,12 @@ pub fn full_rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Poi
 const PRECISION: Precision = Precision::new(256);
 
 fn rank_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> usize {
-    values_at(arena, entries, columns, point).map_or(0, |rows| rank_of(arena, rows, columns))
-}
-
-fn values_at(arena: &Arena, entries: &[Expr], columns: usize, point: &Point) -> Option<Vec<Vec<Interval>>> {
-    let values = arena.enclose_all(entries, point, PRECISION)?;
-    Some(values.chunks(columns).map(<[Interval]>::to_vec).collect())
-}
-
-fn rank_of(arena: &Arena, rows: Vec<Vec<Interval>>, columns: usize) -> usize {
-    pivots(rows, columns, PRECISION, arena.budget()).map_or(0, |chosen| chosen.len())
+    let rank = || {
+        let values = arena.enclose_all(entries, point, PRECISION)?;
+        let rows = values.chunks(columns).map(<[Interval]>::to_vec).collect();
+        Some(pivots(rows, columns, PRECISION, arena.budget())?.len())
+    };
+    rank().unwrap_or(0)
 }
 
 /// Vectors that every row provably annihilates.
@@ -93,15 +87,9 @@ pub fn null_vectors(
     rows: &[Vec<Expr>],
     columns: usize,
 ) -> Result<Vec<Vec<Expr>>, Obstacle> {
-    let entries: Vec<Expr> = rows.iter().flatten().copied().collect();
-    let field = Field::on(arena, domain, &entries)?;
-    let matrix = rows
-        .iter()
-        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
-    let (echelon, _) = Echelon::of(&field, matrix, columns)?;
-    let vectors: Vec<Vec<Expr>> =
-        echelon.null_space().iter().map(|vector| vector.iter().map(|e| field.show(e)).collect()).collect();
+    let field = Field::on(arena, domain, &rows.concat())?;
+    let (echelon, _) = Echelon::of(&field, field.matrix(rows)?, columns)?;
+    let vectors: Vec<Vec<Expr>> = echelon.null_space().iter().map(|vector| field.show_all(vector)).collect();
     for vector in &vectors {
         for row in rows {
             let product = arena.sum(row.iter().zip(vector).map(|(a, b)| arena.mul(*a, *b)));

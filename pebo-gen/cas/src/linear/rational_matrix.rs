@@ -2,12 +2,17 @@
 //!
 //! In: rows of rationals. Out: reduced rows, or the determinant. Each row is brought to integers; from then on every
 //! entry is a determinant of some of them and every division is exact (Bareiss 1968), so that no common divisor is
-//! computed and numbers grow no longer than the answer. Over fractions of polynomials (`linear`) those determinants
-//! would be the longest entries, so that the two share no step. Rows and pivots of a large matrix are found modulo a
-//! prime, and the rest is solved for by `lifting`; rows that this does not explain, for which that prime was a bad
-//! choice, are left to elimination.
+//! computed and numbers grow no longer than the answer. Over fractions of polynomials (`fractions`) those determinants
+//! would be the longest entries, so that the two share the loop, but no step. Rows and pivots of a large matrix are
+//! found modulo a prime, and the rest is solved for by `lifting`; rows that this does not explain, for which that prime
+//! was a bad choice, are left to elimination.
 
+use std::cell::RefCell;
+
+use super::echelon::Echelon;
+use super::elimination::{Eliminated, Pivot, Reach, by_columns, eliminate, first};
 use super::lifting::{self, Lifting};
+use super::matrix::Matrix;
 use super::residues::ResidueRows;
 use crate::poly::{TooLarge, Work, steps};
 use crate::{Integer, Rational};
@@ -15,17 +20,12 @@ use crate::{Integer, Rational};
 /// Rows and columns from which on lifting is quicker than elimination.
 const LARGE: usize = 16;
 
-/// The result of elimination on a matrix.
-pub(crate) struct ReducedMatrix {
-    /// Rows with their pivot columns, ascending; each is one in its pivot column, and all others are zero there.
-    pub(crate) rows: Vec<(usize, Vec<Rational>)>,
-    /// A multiple of each of the rows that are zero on the columns of the matrix, and may not be beyond.
-    pub(crate) rest: Vec<Vec<Rational>>,
-}
+/// Reduced rows, and a multiple of each of the rows that are zero on the columns of the matrix, and may not be beyond.
+pub(crate) type Reduced = (Echelon<Rational>, Matrix<Rational>);
 
 /// Eliminates on the first `columns` columns; a row may have more, which are carried along.
-pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Result<ReducedMatrix, TooLarge> {
-    let rows: Vec<Vec<Integer>> = rows.iter().map(|row| integers(row).0).collect();
+pub(crate) fn reduced(matrix: &Matrix<Rational>, columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
+    let rows: Vec<Vec<Integer>> = matrix.rows().iter().map(|row| integers(row).0).collect();
     if rows.len().min(columns) >= LARGE
         && let Some(reduced) = lifted(&rows, columns, work)?
     {
@@ -36,41 +36,44 @@ pub(crate) fn reduced(rows: &[Vec<Rational>], columns: usize, work: &Work) -> Re
 
 /// A solution of rows `[matrix | right side]`, with zero for free unknowns; none if there is none.
 pub(crate) fn solution(
-    rows: &[Vec<Rational>],
+    matrix: &Matrix<Rational>,
     unknowns: usize,
     work: &Work,
 ) -> Result<Option<Vec<Rational>>, TooLarge> {
-    let ReducedMatrix { rows, rest } = reduced(rows, unknowns, work)?;
-    if rest.iter().any(|row| !row[unknowns].is_zero()) {
-        return Ok(None);
-    }
-    let mut solution = vec![Rational::ZERO; unknowns];
-    for (pivot, row) in rows {
-        solution[pivot] = row[unknowns].clone();
-    }
-    Ok(Some(solution))
+    let (echelon, rest) = reduced(matrix, unknowns, work)?;
+    Ok(echelon.solution(&rest, unknowns, &Rational::ZERO))
 }
 
-fn eliminated(mut rest: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Result<ReducedMatrix, TooLarge> {
-    let mut done: Vec<(usize, Vec<Integer>)> = Vec::new();
-    let mut last = Integer::ONE;
-    for column in 0..columns {
-        let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { continue };
-        let row = rest.swap_remove(index);
-        for other in rest.iter_mut().chain(done.iter_mut().map(|(_, row)| row)) {
-            clear(other, &row, column, &last, work)?;
-        }
-        last = row[column].clone();
-        done.push((column, row));
-    }
-    let number = |n: &Integer| Rational::from(n.clone());
+fn eliminated(rows: Vec<Vec<Integer>>, columns: usize, work: &Work) -> Result<Reduced, TooLarge> {
+    let found = by_exact_divisions(rows, columns, Reach::All, work)?;
     let over = |n: &Integer, pivot: &Integer| Rational::new(n.clone(), pivot.clone()).unwrap_or(Rational::ZERO);
-    let rows = done.iter().map(|(column, row)| (*column, row.iter().map(|n| over(n, &row[*column])).collect()));
-    Ok(ReducedMatrix { rows: rows.collect(), rest: rest.iter().map(|row| row.iter().map(number).collect()).collect() })
+    let row =
+        |Pivot { column, row, .. }: &Pivot<Integer>| (*column, row.iter().map(|n| over(n, &row[*column])).collect());
+    let rest = Matrix::new(found.rest).map(|n| Rational::from(n.clone()));
+    Ok((Echelon { rows: found.pivots.iter().map(row).collect(), columns }, rest))
+}
+
+/// Elimination column by column, in which each division by the pivot before is exact.
+fn by_exact_divisions(
+    rows: Vec<Vec<Integer>>,
+    columns: usize,
+    reach: Reach,
+    work: &Work,
+) -> Result<Eliminated<Integer>, TooLarge> {
+    // The pivot before, and the present one.
+    let pivots = RefCell::new((Integer::ONE, Integer::ONE));
+    let keep = |row: Vec<Integer>, column: usize| {
+        let (before, present) = &mut *pivots.borrow_mut();
+        *before = std::mem::replace(present, row[column].clone());
+        Ok(row)
+    };
+    let clear =
+        |other: &mut [Integer], row: &[Integer], column: usize| clear(other, row, column, &pivots.borrow().0, work);
+    eliminate(rows, reach, by_columns(columns, first(Integer::is_zero)), keep, clear)
 }
 
 /// The same by lifting; none if pivots modulo the prime are not the pivots.
-fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<ReducedMatrix>, TooLarge> {
+fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<Reduced>, TooLarge> {
     let Some(prime) = lifting::prime() else { return Ok(None) };
     let mut echelon = ResidueRows::new(&prime, columns);
     let (mut chosen, mut others) = (Vec::new(), Vec::new());
@@ -114,29 +117,19 @@ fn lifted(rows: &[Vec<Integer>], columns: usize, work: &Work) -> Result<Option<R
             left[column] = over(&value)?;
         }
     }
-    Ok(Some(ReducedMatrix { rows: reduced, rest }))
+    Ok(Some((Echelon { rows: reduced, columns }, Matrix::new(rest))))
 }
 
 /// The determinant of a square matrix.
-pub(crate) fn determinant(rows: &[Vec<Rational>], work: &Work) -> Result<Rational, TooLarge> {
-    let (mut rest, scales): (Vec<Vec<Integer>>, Vec<Integer>) = rows.iter().map(|row| integers(row)).unzip();
-    let mut last = Integer::ONE;
-    for column in 0..rows.len() {
-        let Some(index) = rest.iter().position(|row| !row[column].is_zero()) else { return Ok(Rational::ZERO) };
-        // A row that passes an odd number of others turns the sign.
-        let mut row = rest.remove(index);
-        if index % 2 == 1 {
-            for entry in &mut row {
-                *entry = -&*entry;
-            }
-        }
-        for other in &mut rest {
-            clear(other, &row, column, &last, work)?;
-        }
-        last = row[column].clone();
+pub(crate) fn determinant(matrix: &Matrix<Rational>, work: &Work) -> Result<Rational, TooLarge> {
+    let (rows, scales): (Vec<Vec<Integer>>, Vec<Integer>) = matrix.rows().iter().map(|row| integers(row)).unzip();
+    let found = by_exact_divisions(rows, matrix.height(), Reach::Below, work)?;
+    if !found.rest.is_empty() {
+        return Ok(Rational::ZERO);
     }
+    let total = found.pivots.last().map_or(Integer::ONE, |Pivot { column, row, .. }| row[*column].clone());
     let denominator = scales.iter().fold(Integer::ONE, |product, scale| &product * scale);
-    Rational::new(last, denominator).ok_or(TooLarge)
+    Rational::new(if found.odd { -&total } else { total }, denominator).ok_or(TooLarge)
 }
 
 /// `(pivot * other - factor * row) / last`, which is zero in the column of the pivot.
@@ -167,15 +160,16 @@ fn integers(row: &[Rational]) -> (Vec<Integer>, Integer) {
 mod tests {
     use super::*;
 
-    fn matrix(rows: &[&[i64]], denominator: i64) -> Vec<Vec<Rational>> {
+    fn matrix(rows: &[&[i64]], denominator: i64) -> Matrix<Rational> {
         let entry = |n: &i64| Rational::new(*n, denominator).unwrap();
-        rows.iter().map(|row| row.iter().map(entry).collect()).collect()
+        Matrix::new(rows.iter().map(|row| row.iter().map(entry).collect()).collect())
     }
 
     #[test]
     fn rows_are_reduced_and_the_rest_has_the_contradictions() {
         let rows = matrix(&[&[0, 2, 4, 1], &[1, 1, 1, 0], &[1, 3, 5, 2], &[2, 4, 6, 1]], 10);
-        let ReducedMatrix { rows, rest } = reduced(&rows, 3, &Work::new(1_000_000)).unwrap();
+        let (echelon, rest) = reduced(&rows, 3, &Work::new(1_000_000)).unwrap();
+        let (rows, rest) = (echelon.rows, rest.into_rows());
         let pivots: Vec<usize> = rows.iter().map(|(column, _)| *column).collect();
         assert_eq!(pivots, [0, 1]);
         let ratio = |n: i64, d: i64| Rational::new(n, d).unwrap();
@@ -207,18 +201,18 @@ mod tests {
             .collect();
         let by_lifting = lifted(&rows, columns, &work).unwrap().expect("a good prime");
         let by_elimination = eliminated(rows, columns, &work).unwrap();
-        assert_eq!(by_lifting.rows.len(), rank);
+        assert_eq!(by_lifting.0.rank(), rank);
         let before = |rows: &[(usize, Vec<Rational>)]| {
             rows.iter().map(|(pivot, row)| (*pivot, row[..columns].to_vec())).collect::<Vec<_>>()
         };
-        assert_eq!(before(&by_lifting.rows), before(&by_elimination.rows));
+        assert_eq!(before(&by_lifting.0.rows), before(&by_elimination.0.rows));
         // The carried columns are determined up to the remaining rows, which span the same.
         let rest = [&by_lifting, &by_elimination].map(|found| {
-            assert!(found.rest.iter().all(|row| row[..columns].iter().all(Rational::is_zero)));
-            found.rest.iter().map(|row| row[columns..].to_vec()).collect::<Vec<_>>()
+            assert!(found.1.rows().iter().all(|row| row[..columns].iter().all(Rational::is_zero)));
+            found.1.rows().iter().map(|row| row[columns..].to_vec()).collect::<Vec<_>>()
         });
         assert_eq!(rest.each_ref().map(Vec::len), [height - rank; 2]);
-        let spans = rest.map(|rest| reduced(&rest, carried, &work).unwrap().rows);
+        let spans = rest.map(|rest| reduced(&Matrix::new(rest), carried, &work).unwrap().0);
         assert_eq!(spans[0], spans[1]);
     }
 

@@ -1,8 +1,9 @@
 //! Linear relations among columns of residues.
 //!
 //! In: any number of rows over a prime field. Out: the number of independent rows, and the vectors that all of them
-//! annihilate.
+//! annihilate. Rows come one by one, until there are enough: the loop of `elimination` has all of them at once.
 
+use super::echelon::Echelon;
 use crate::poly::{PrimeField, Residue};
 
 /// Rows in echelon form.
@@ -49,37 +50,28 @@ impl<'a> ResidueRows<'a> {
         true
     }
 
-    /// The rows by ascending pivots, each zero in the pivots of the others.
-    pub(crate) fn reduced(self) -> Vec<(usize, Vec<Residue>)> {
-        let mut reduced = self.echelon;
-        for index in (0..reduced.len()).rev() {
-            let (above, rest) = reduced.split_at_mut(index);
+    /// The rows in reduced form.
+    pub(crate) fn reduced(self) -> Echelon<Residue> {
+        let Self { prime, columns, echelon: mut rows } = self;
+        for index in (0..rows.len()).rev() {
+            let (above, rest) = rows.split_at_mut(index);
             let (pivot, row) = &rest[0];
             for (_, other) in above {
                 let factor = other[*pivot];
                 if !factor.is_zero() {
-                    clear(self.prime, &mut other[*pivot..], factor, &row[*pivot..]);
+                    clear(prime, &mut other[*pivot..], factor, &row[*pivot..]);
                 }
             }
         }
-        reduced
+        Echelon { rows, columns }
     }
 
     /// A basis of the vectors that all rows annihilate, each with its last column: the others are left of it, and no
     /// two have the same. A column has a vector if and only if it is a combination of those left of it.
     pub fn null_space(&self) -> Vec<(usize, Vec<Residue>)> {
-        let prime = self.prime;
         let reduced = self.clone().reduced();
-        let is_pivot = |column: &usize| reduced.binary_search_by_key(column, |(pivot, _)| *pivot).is_ok();
-        let vector = |free: usize| {
-            let mut vector = vec![Residue::ZERO; self.columns];
-            vector[free] = prime.one();
-            for (pivot, row) in &reduced {
-                vector[*pivot] = prime.neg(row[free]);
-            }
-            (free, vector)
-        };
-        (0..self.columns).filter(|column| !is_pivot(column)).map(vector).collect()
+        let vectors = reduced.annihilated(&Residue::ZERO, &self.prime.one(), |entry| self.prime.neg(*entry));
+        reduced.free().zip(vectors).collect()
     }
 }
 

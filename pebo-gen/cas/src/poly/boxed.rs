@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use super::division::{Outcome, RemainderSum};
 use super::layout::{Exponents, Layout};
-use super::multiply::{CoefficientSum, PackedFactor, PackedTerms};
+use super::sums::{CoefficientSum, Outcome, PackedFactor, PackedTerms, RemainderSum};
 use crate::Integer;
 
 /// Larger boxes exceed the cache: a hash table or a heap is then no slower.

@@ -1,22 +1,15 @@
 //! Exact quotients: cheap exclusions, and the choice of the division.
+//!
+//! The sums that the remainder consists of are in an array if the box of exponents is well filled, and else in a hash
+//! table. They are visited in descending order, so that a sum is complete when its turn comes; the division ends at the
+//! first that the divisor's leading term does not divide.
 
 use super::Poly;
-use super::division::{Division, Outcome};
-use super::layout::{Layout, MAX_WORDS};
+use super::boxed::ExponentBox;
+use super::layout::{Exponents, Layout, MAX_WORDS, key_quotient};
+use super::sums::{Division, Outcome, PackedFactor, RemainderSum};
 use super::work::{TooLarge, Work, steps};
 use crate::Integer;
-
-/// The quotient of two keys, if the second divides the first.
-#[inline]
-pub(super) fn key_quotient(guard: u64, key: &[u64], divisor: &[u64], quotient: &mut [u64]) -> bool {
-    let mut borrowed = 0;
-    for ((word, other), result) in key.iter().zip(divisor).zip(quotient) {
-        let difference = (word | guard).wrapping_sub(*other);
-        borrowed |= !difference & guard;
-        *result = difference & !guard;
-    }
-    borrowed == 0
-}
 
 impl Poly {
     /// The quotient, if `divisor` is not zero and divides this without remainder over the integers.
@@ -75,7 +68,7 @@ impl Poly {
     }
 
     fn div_long(&self, divisor: &Self, keys: &[u64], work: &Work) -> Result<Option<Self>, TooLarge> {
-        let degrees: Option<super::layout::Exponents> = self
+        let degrees: Option<Exponents> = self
             .degrees()
             .iter()
             .zip(self.variables())
@@ -109,5 +102,32 @@ impl Poly {
             Outcome::Quotient(keys, coefficients) => Some(Self::from_sorted(self.layout.clone(), keys, coefficients)),
             Outcome::Remainder | Outcome::Overflow => None,
         })
+    }
+}
+
+impl Division<'_> {
+    /// The quotient by the quicker of the two.
+    fn run<S: RemainderSum>(
+        &self,
+        dividend: &[Integer],
+        divisor: &[S::Factor],
+    ) -> Result<Outcome<S::Factor>, TooLarge> {
+        let cost = self.weight.saturating_mul(steps(divisor.len()));
+        // A cell costs about a nanosecond, an access to the table ten.
+        let degrees = self.layout.degrees(self.dividend);
+        if let Some(cells) = ExponentBox::new(self.layout, &degrees, 8 * dividend.len()) {
+            let dividend = PackedFactor { keys: self.dividend, coefficients: dividend };
+            let divisor = PackedFactor { keys: self.divisor, coefficients: divisor };
+            return cells.quotient::<S, _>(&dividend, &divisor, self.degrees, || self.work.spend(cost));
+        }
+        match self.layout.words() {
+            1 => self.in_table::<1, S>(dividend, divisor),
+            2 => self.in_table::<2, S>(dividend, divisor),
+            4 => self.in_table::<4, S>(dividend, divisor),
+            8 => self.in_table::<8, S>(dividend, divisor),
+            16 => self.in_table::<16, S>(dividend, divisor),
+            MAX_WORDS => self.in_table::<MAX_WORDS, S>(dividend, divisor),
+            _ => Err(TooLarge),
+        }
     }
 }

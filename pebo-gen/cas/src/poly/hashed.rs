@@ -2,10 +2,8 @@
 
 use std::collections::BinaryHeap;
 
-use super::divide::key_quotient;
-use super::division::{Division, Outcome, RemainderSum};
-use super::layout::MAX_WORDS;
-use super::multiply::{CoefficientSum, PackedFactor, PackedTerms};
+use super::layout::{MAX_WORDS, key_quotient};
+use super::sums::{CoefficientSum, Division, Outcome, PackedFactor, PackedTerms, RemainderSum};
 use super::work::{TooLarge, steps};
 use crate::Integer;
 

@@ -199,3 +199,15 @@ impl Layout {
         (smallest != *self).then_some(smallest)
     }
 }
+
+/// The quotient of two keys, if the second divides the first.
+#[inline]
+pub(super) fn key_quotient(guard: u64, key: &[u64], divisor: &[u64], quotient: &mut [u64]) -> bool {
+    let mut borrowed = 0;
+    for ((word, other), result) in key.iter().zip(divisor).zip(quotient) {
+        let difference = (word | guard).wrapping_sub(*other);
+        borrowed |= !difference & guard;
+        *result = difference & !guard;
+    }
+    borrowed == 0
+}

@@ -21,7 +21,6 @@
 mod boxed;
 mod contents;
 mod divide;
-mod division;
 mod evaluate;
 mod factors;
 mod field;
@@ -36,6 +35,7 @@ mod packed;
 mod root;
 mod square_free;
 mod substitute;
+mod sums;
 mod work;
 
 use std::cmp::Ordering;

@@ -3,81 +3,13 @@
 //! Every product of two terms is computed once and added to a sum per monomial. The sums are in an array indexed by the
 //! exponents if the box of exponents is not much larger than the number of products, else in a hash table, whose keys
 //! are sorted at the end. They are words, double words, or integers of any size, by the sizes of the coefficients.
-//!
-//! One thing with `division`, `divide`, `boxed`, `hashed` and `packed`: sums per monomial are kept in an array, a table
-//! or one long integer, for products and quotients alike, and each delegates polynomials that are too sparse or too
-//! dense for it.
 
 use super::boxed::ExponentBox;
 use super::layout::{Exponents, Layout, MAX_WORDS};
+use super::sums::{CoefficientSum, PackedFactor, PackedTerms};
 use super::work::{TooLarge, Work, steps};
 use super::{Poly, hashed, packed};
 use crate::Integer;
-
-/// A sum of products of coefficients.
-pub(super) trait CoefficientSum: Clone + Default {
-    /// The coefficients that are multiplied.
-    type Factor;
-    /// Adds `a * b`.
-    fn add_product(&mut self, a: &Self::Factor, b: &Self::Factor);
-    /// True if nothing remains.
-    fn vanishes(&self) -> bool;
-    /// The value.
-    fn into_integer(self) -> Integer;
-}
-
-/// Only if the sum is known to fit.
-impl CoefficientSum for i64 {
-    type Factor = i64;
-    #[inline]
-    fn add_product(&mut self, a: &i64, b: &i64) {
-        *self += a * b;
-    }
-    fn vanishes(&self) -> bool {
-        *self == 0
-    }
-    fn into_integer(self) -> Integer {
-        self.into()
-    }
-}
-
-/// Only if the sum is known to fit.
-impl CoefficientSum for i128 {
-    type Factor = i64;
-    #[inline]
-    fn add_product(&mut self, a: &i64, b: &i64) {
-        *self += i128::from(*a) * i128::from(*b);
-    }
-    fn vanishes(&self) -> bool {
-        *self == 0
-    }
-    fn into_integer(self) -> Integer {
-        self.into()
-    }
-}
-
-impl CoefficientSum for Integer {
-    type Factor = Integer;
-    #[inline]
-    fn add_product(&mut self, a: &Integer, b: &Integer) {
-        Integer::add_product(self, a, b);
-    }
-    fn vanishes(&self) -> bool {
-        self.is_zero()
-    }
-    fn into_integer(self) -> Integer {
-        self
-    }
-}
-
-/// Keys and coefficients of a factor, in the layout of the product.
-pub(super) struct PackedFactor<'a, C> {
-    pub(super) keys: &'a [u64],
-    pub(super) coefficients: &'a [C],
-}
-
-/// Descending keys, and their coefficients.
-pub(super) type PackedTerms = (Vec<u64>, Vec<Integer>);
 
 impl Poly {
     /// The product.

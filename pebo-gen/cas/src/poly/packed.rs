@@ -2,7 +2,7 @@
 
 use super::Poly;
 use super::layout::Layout;
-use super::multiply::PackedTerms;
+use super::sums::PackedTerms;
 use super::work::TooLarge;
 use crate::Integer;
 

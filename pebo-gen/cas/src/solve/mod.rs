@@ -18,7 +18,7 @@ mod quadratic;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::linear::Echelon;
+use super::linear::{Echelon, Matrix};
 use super::poly::Monomial;
 use super::{Arena, Expr, Node, Symbol};
 use crate::forms::opaque::OpaqueTerms;
@@ -289,16 +289,13 @@ fn eliminate(
             entries
         })
         .collect();
-    let (echelon, _) = Echelon::of(&field, matrix, columns.len())?;
+    let (echelon, _) = Echelon::of(&field, Matrix::new(matrix), columns.len())?;
     let mut known = Vec::new();
-    for (pivot, row) in echelon.rows() {
-        let alone = row[..columns.len()].iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
-        if alone {
-            let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
-            let formula = arena.multiply(&Rational::ONE, factors);
-            let value = opaque.restore(field.show(&row[columns.len()]));
-            known.push(Equation { formula: opaque.restore(formula), value });
-        }
+    for (pivot, row) in echelon.determined() {
+        let factors = columns[pivot].powers().iter().map(|&(k, e)| (field.kernel(k), Rational::from(i64::from(e))));
+        let formula = arena.multiply(&Rational::ONE, factors);
+        let value = opaque.restore(field.show(&row[columns.len()]));
+        known.push(Equation { formula: opaque.restore(formula), value });
     }
     Ok(known)
 }

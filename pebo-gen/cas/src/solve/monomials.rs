@@ -3,9 +3,12 @@
 //! In: products of unknown kernels with their values. Out: the kernels alone: from `m*sin(a)` and `m*cos(a)` the angle
 //! and the amplitude, from `p*s` and `p*s^2` the quotient of the two.
 
+use std::convert::Infallible;
+
 use super::equation::{Equation, Inverse, angle_of, unpower};
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
+use crate::linear::elimination::{Pivot, Reach, by_columns, eliminate, first};
 use crate::tower::Field;
 use crate::{Arena, Domain, Node, Rational};
 
@@ -85,42 +88,31 @@ fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> V
     let mut kernels: Vec<Expr> = products.iter().flat_map(|p| p.factors.iter().map(|(base, _)| *base)).collect();
     kernels.sort_unstable();
     kernels.dedup();
-    // Rows of exponents, each beside powers of the values.
-    let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> = Vec::new();
+    // Rows of exponents, each before powers of the values.
+    let mut rows: Vec<Vec<Rational>> = Vec::new();
     for (index, product) in products.iter().enumerate() {
         let of = |kernel: &Expr| {
             let factor = product.factors.iter().find(|(base, _)| base == kernel);
             factor.map_or(Rational::ZERO, |(_, exponent)| exponent.clone())
         };
         let powers = (0..products.len()).map(|other| Rational::from(i64::from(other == index)));
-        rows.push((kernels.iter().map(of).collect(), powers.collect()));
+        rows.push(kernels.iter().map(of).chain(powers).collect());
     }
     if products.iter().filter(|product| product.factors.len() > 1).count() < 2 {
         // Each of the others is inverted alone.
         return Vec::new();
     }
-    let mut pivots = Vec::new();
-    for column in 0..kernels.len() {
-        let Some(row) = (pivots.len()..rows.len()).find(|row| !rows[*row].0[column].is_zero()) else { continue };
-        rows.swap(pivots.len(), row);
-        let pivot = rows[pivots.len()].clone();
-        for (index, row) in rows.iter_mut().enumerate() {
-            if index == pivots.len() || row.0[column].is_zero() {
-                continue;
-            }
-            let Some(factor) = row.0[column].checked_div(&pivot.0[column]) else { return Vec::new() };
-            let less = |own: &mut [Rational], other: &[Rational]| {
-                for (own, other) in own.iter_mut().zip(other) {
-                    *own = &*own - &(&factor * other);
-                }
-            };
-            less(&mut row.0, &pivot.0);
-            less(&mut row.1, &pivot.1);
+    let choose = by_columns(kernels.len(), first(Rational::is_zero));
+    let clear = |other: &mut [Rational], row: &[Rational], column: usize| {
+        let factor = &other[column] / &row[column];
+        for (own, above) in other.iter_mut().zip(row) {
+            *own = &*own - &(&factor * above);
         }
-        pivots.push(column);
-    }
-    let alone = |(index, column): (usize, &usize)| {
-        let (exponents, powers) = &rows[index];
+        Ok::<_, Infallible>(())
+    };
+    let Ok(found) = eliminate(rows, Reach::All, choose, |row, _| Ok(row), clear);
+    let alone = |Pivot { column, row, .. }: &Pivot<Rational>| {
+        let (exponents, powers) = row.split_at(kernels.len());
         if exponents.iter().filter(|exponent| !exponent.is_zero()).count() > 1 {
             return None;
         }
@@ -133,5 +125,5 @@ fn by_exponents(arena: &Arena, domain: &Domain, products: &[KernelProduct]) -> V
         let value = arena.multiply(&Rational::ONE, value.filter(|(_, power)| !power.is_zero()));
         unpower(arena, domain, kernels[*column], &(&exponents[*column] * &whole), value)
     };
-    pivots.iter().enumerate().filter_map(alone).collect()
+    found.pivots.iter().filter_map(alone).collect()
 }

@@ -6,7 +6,7 @@ use crate::graph::function::Function;
 use crate::number::rational::half;
 use crate::poly::{Poly, steps};
 
-use super::fraction::{Fraction, negated};
+use super::fraction::Fraction;
 use super::{Field, Obstacle};
 
 impl Field<'_> {
@@ -28,7 +28,7 @@ impl Field<'_> {
     fn get(&self, expr: Expr) -> Result<Fraction, Obstacle> {
         match self.round.fractions.borrow().get(&expr) {
             Some(found) => {
-                self.work().spend(1 + steps(found.weight()))?;
+                self.limit().spend(1 + steps(found.weight()))?;
                 Ok(found.clone())
             }
             None => Err(Obstacle::Kernel(self.arena.print(expr))),
@@ -88,10 +88,10 @@ impl Field<'_> {
             poly.scale(&(numerator * &missing))
         };
         let num = total(parts.iter().map(over).collect());
-        self.work().spend(steps(num.term_count()))?;
-        let mut result = self.fraction_of(&num, &Poly::constant(common))?;
+        self.limit().spend(steps(num.term_count()))?;
+        let mut result = self.quotient(&num, &Poly::constant(common))?;
         for (denominator, numerators) in others {
-            result = self.add(&result, &self.fraction_of(&total(numerators), &denominator)?)?;
+            result = self.add(&result, &self.quotient(&total(numerators), &denominator)?)?;
         }
         Ok(result)
     }
@@ -99,7 +99,7 @@ impl Field<'_> {
     /// A function of the table at an argument.
     fn applied(&self, expr: Expr, function: Function, argument: &Fraction) -> Result<Fraction, Obstacle> {
         let opposed = || -> Result<(Fraction, Fraction), Obstacle> {
-            Ok((self.exponential(argument)?, self.exponential(&negated(argument))?))
+            Ok((self.exponential(argument)?, self.exponential(&argument.opposite())?))
         };
         match function {
             Function::Sin => Ok(self.angle(argument)?.0),

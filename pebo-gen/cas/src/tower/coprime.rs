@@ -1,18 +1,10 @@
-//! A coprime base of polynomials: products of powers of polynomials without common factors.
+//! A coprime base: polynomials over which others are products of powers.
 //!
-//! In: the argument of a root, a logarithm or an absolute value. Out: a sign and powers of elements of the base. A
-//! field keeps one base: where a new polynomial shares a factor with an element, that one is split, and the field
-//! starts again with the finer base. Holds after: any two elements that occur are coprime, so the relation of
-//! `sqrt(a*b)` and `sqrt(a)` is found.
-//!
-//! Squares hide behind `sin^2 = 1 - cos^2`: the factor `1 - cos^2` is taken as `sin^2`, and squares of sums of sines
-//! and cosines are searched for ([`Field::hidden_root`]).
+//! In: square-free polynomials. Out: elements of the base whose product each is; where a new polynomial shares a factor
+//! with an element, that one is split. Holds after: any two elements that occur are coprime.
 
-use crate::Integer;
 use crate::graph::expr::Expr;
 use crate::poly::{Poly, TooLarge, Work};
-
-use super::{Field, Obstacle};
 
 /// A coprime base: square-free polynomials without common factors.
 #[derive(Default, Debug)]
@@ -25,16 +17,16 @@ pub(in crate::tower) struct CoprimeBase {
 }
 
 /// A polynomial over a coprime base.
-struct Splitting {
+pub(in crate::tower) struct Splitting {
     /// Elements of the base, whose product it is.
-    parts: Vec<Poly>,
+    pub parts: Vec<Poly>,
     /// True if an element had to be split: kernels made of it before do not go with its parts.
-    finer: bool,
+    pub finer: bool,
 }
 
 impl CoprimeBase {
     /// Writes a square-free polynomial over the base, which grows by its new factors.
-    fn split(&mut self, poly: Poly, work: &Work) -> Result<Splitting, TooLarge> {
+    pub(in crate::tower) fn split(&mut self, poly: Poly, work: &Work) -> Result<Splitting, TooLarge> {
         let (mut rest, mut parts, mut finer) = (poly, Vec::new(), false);
         let mut index = 0;
         while let Some(element) = self.entered.get(index).filter(|_| !rest.is_constant()).cloned() {
@@ -59,90 +51,24 @@ impl CoprimeBase {
         Ok(Splitting { parts, finer })
     }
 
+    /// An element of an earlier round that is yet to be entered.
+    pub(in crate::tower) fn next_pending(&mut self) -> Option<Expr> {
+        self.pending.pop()
+    }
+
     /// Enters an element of an earlier round.
-    fn enter(&mut self, poly: Poly) {
+    pub(in crate::tower) fn enter(&mut self, poly: Poly) {
         if !poly.is_constant() && !self.entered.contains(&poly) {
             self.entered.push(poly);
         }
     }
 
     /// Keeps the elements of this round for the next one.
-    fn keep(&mut self, shown: impl Fn(&Poly) -> Expr) {
+    pub(in crate::tower) fn keep(&mut self, shown: impl Fn(&Poly) -> Expr) {
         self.pending.extend(std::mem::take(&mut self.entered).iter().map(shown));
         self.pending.sort_unstable();
         self.pending.dedup();
         self.pending.reverse();
-    }
-}
-
-/// A sign and powers of parts.
-#[derive(Debug)]
-pub(in crate::tower) struct ElementProduct {
-    /// True if the product of the powers must be negated.
-    pub negative: bool,
-    /// Parts with their exponents: each primitive with a positive leading coefficient.
-    pub powers: Vec<(Poly, u32)>,
-    /// The divisor of the product of the powers.
-    pub divisor: Integer,
-}
-
-impl Field<'_> {
-    /// A primitive polynomial as a product of powers of parts.
-    pub(in crate::tower) fn product_of(&self, poly: &Poly) -> Result<ElementProduct, Obstacle> {
-        let (rest, sines) = self.without_sines(poly)?;
-        let mut powers: Vec<(Poly, u32)> =
-            sines.into_iter().map(|power| (Poly::variable(power.sine), power.times)).collect();
-        let mut found = rest.square_free(self.limit())?;
-        let mut divisor = Integer::ONE;
-        if let [(factor, 1)] = found.factors.as_slice() {
-            for negative in [false, true] {
-                if let Some((root, multiple)) = self.hidden_root(&if negative { -factor } else { factor.clone() })? {
-                    divisor = multiple;
-                    if negative {
-                        found.content = -found.content;
-                    }
-                    found.factors = vec![(root, 2)];
-                    break;
-                }
-            }
-        }
-        for (factor, times) in found.factors {
-            let monomial = factor.monomial_content();
-            let mut rest = factor;
-            for &(variable, exponent) in monomial.powers() {
-                let variable = Poly::variable(variable);
-                powers.push((variable.clone(), exponent * times));
-                rest = rest.div_exact(&variable.pow(exponent, self.limit())?, self.limit())?.unwrap_or(rest);
-            }
-            for part in self.over_base(rest)? {
-                powers.push((part, times));
-            }
-        }
-        Ok(ElementProduct { negative: found.content.is_negative(), powers, divisor })
-    }
-
-    /// A square-free polynomial without monomial factors over the coprime base.
-    fn over_base(&self, poly: Poly) -> Result<Vec<Poly>, Obstacle> {
-        self.enter_pending()?;
-        let Splitting { parts, finer } = self.base.borrow_mut().split(poly, self.limit())?;
-        if finer {
-            self.round.finer.set(true);
-        }
-        Ok(parts)
-    }
-
-    /// Enters the elements of earlier rounds. Reading them may itself use the base.
-    fn enter_pending(&self) -> Result<(), Obstacle> {
-        loop {
-            let Some(expr) = self.base.borrow_mut().pending.pop() else { return Ok(()) };
-            let poly = self.fraction(expr)?.num.primitive().1;
-            self.base.borrow_mut().enter(poly);
-        }
-    }
-
-    /// Keeps the base for the next round.
-    pub(in crate::tower) fn keep_base(&self) {
-        self.base.borrow_mut().keep(|poly| self.show_polynomial(poly));
     }
 }
 

@@ -74,7 +74,7 @@ impl Field<'_> {
         }
         let conjugate = if conjugate.leading_coefficient().is_negative() { -&conjugate } else { conjugate };
         let above = self.reduce(&fraction.num.mul(&conjugate, self.limit()).ok()?).ok()?;
-        let rest = self.fraction_of(&above, &fraction.den).ok()?;
+        let rest = self.quotient(&above, &fraction.den).ok()?;
         Some(self.arena.div(self.show(&rest), self.show_polynomial(&conjugate)))
     }
 

@@ -23,11 +23,8 @@
 //! Independence is not known for relations among constants (e, pi, sin(1): Schanuel's conjecture), roots of sums of
 //! roots that do not denest, and inverse trigonometric functions beyond sums of three. No verdict relies on
 //! independence: an enclosure refutes (see [`crate::domain::zero`]).
-//!
-//! One thing with `domain`, `manifold` and all files of this folder: a kernel has arguments in normal form, a normal
-//! form consists of kernels, and the equality of kernels depends on their signs on the domain, which normal forms
-//! decide.
 
+mod arithmetic;
 mod convert;
 mod coprime;
 mod express;
@@ -35,6 +32,7 @@ mod fourier;
 mod fraction;
 mod kernel;
 mod obstacle;
+mod products;
 pub mod residue;
 mod sign;
 mod sines;
@@ -56,27 +54,14 @@ pub use obstacle::Obstacle;
 pub use sign::Signs;
 
 use coprime::CoprimeBase;
-use kernel::Kernels;
 use kernel::absolute_angles::absolute_angles;
-use kernel::argument::{Atoms, Units};
-use kernel::inverse::{InverseAngle, domain_of};
-use kernel::radical::ProductRoot;
-use kernel::trigonometric::Pair;
+use kernel::range::{InverseAngle, Pair};
+use kernel::units::{Atoms, Family, Units};
+use kernel::{AlgebraicRelation, Kernel, Kernels, ProductRoot};
 use sign::SignMemory;
 
 /// The greatest number of refinements of the bases of angles and exponents before the field is given up.
 const MOST_ROUNDS: usize = 12;
-
-/// The arguments that a basis serves.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-enum Family {
-    /// Arguments of sine and cosine.
-    Angle,
-    /// Arguments of the exponential.
-    Exponent,
-    /// Radicands.
-    Root,
-}
 
 /// The kernels of one problem, and the arithmetic over them.
 #[derive(Debug)]
@@ -149,7 +134,7 @@ impl<'a> Field<'a> {
         let mut field = Self {
             arena,
             work: Work::within(arena.budget().of_one_problem(), arena.budget()),
-            domain: domain_of(facts),
+            domain: Domain { facts: facts.clone(), ..Domain::default() },
             steps: steps.iter().map(|step| (step.symbol, step.clone())).collect(),
             roots: roots.to_vec(),
             units: RefCell::default(),
@@ -178,10 +163,6 @@ impl<'a> Field<'a> {
         Err(Obstacle::TooLarge)
     }
 
-    fn work(&self) -> &Work {
-        &self.work
-    }
-
     /// The arena of the expressions.
     pub fn arena(&self) -> &'a Arena {
         self.arena
@@ -191,6 +172,28 @@ impl<'a> Field<'a> {
     pub fn kernels_of(&self, symbols: &BTreeSet<Symbol>) -> BTreeSet<u32> {
         let kernels = self.round.kernels.borrow();
         kernels.iter().filter(|(_, k)| self.arena.depends_on(k.expr, symbols)).map(|(n, _)| n).collect()
+    }
+
+    /// The number of the kernel of an expression, entered if it is new.
+    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<AlgebraicRelation>, positive: bool) -> u32 {
+        self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
+    }
+
+    /// The kernel as a fraction.
+    pub(in crate::tower) fn entered(
+        &self,
+        expr: Expr,
+        relation: Option<AlgebraicRelation>,
+        positive: bool,
+    ) -> Fraction {
+        Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
+    }
+
+    /// True if a kernel with an algebraic relation occurs.
+    pub(crate) fn has_relations(&self, fraction: &Fraction) -> bool {
+        let kernels = self.round.kernels.borrow();
+        let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());
+        variables.any(|variable| kernels[*variable].relation.is_some())
     }
 
     /// The expressions of all kernels.
@@ -217,12 +220,7 @@ impl<'a> Field<'a> {
 
     /// A polynomial over the kernels as a fraction.
     pub fn of_polynomial(&self, poly: &Poly) -> Result<Fraction, Obstacle> {
-        self.fraction_of(poly, &Poly::one())
-    }
-
-    /// The fraction of two polynomials over the kernels.
-    pub fn quotient(&self, num: &Poly, den: &Poly) -> Result<Fraction, Obstacle> {
-        self.fraction_of(num, den)
+        self.quotient(poly, &Poly::one())
     }
 
     /// The work limit, for polynomial arithmetic on numerators.

@@ -6,7 +6,6 @@
 use std::collections::BTreeSet;
 
 use crate::plant::Plant;
-use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::{Answer, decide};
 use pebo_cas::linear::combination::combine_on;
 use pebo_cas::linear::contrast::{Contrast, contrast};
@@ -43,7 +42,7 @@ fn over(plant: &Plant, domain: &Domain, expr: Expr, basis: &[Expr]) -> Result<Op
     for (place, coefficient) in places.into_iter().zip(found) {
         row[place] = coefficient;
     }
-    match decide(arena, arena.sub(expr, dot(arena, &row, basis)), domain) {
+    match decide(arena, arena.sub(expr, arena.dot(&row, basis)), domain) {
         Answer::Zero => Ok(Some(row)),
         Answer::Open(obstacle) => Err(obstacle),
         Answer::NonZero(_) => Err(Obstacle::NoWitness),

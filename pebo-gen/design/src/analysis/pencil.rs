@@ -4,8 +4,8 @@
 //! all s are the eigenvectors within the largest subspace of ker A21 that A11 maps into itself; that subspace is the
 //! kernel of `A21, A21 A11, .., A21 A11^(n-1)`, which takes no eigenvalues to compute, so the answer is exact.
 
+use crate::plant::Matrix;
 use crate::plant::class::Linear;
-use crate::plant::matrix::Matrix;
 use crate::plant::{Class, Plant};
 use crate::source::{Code, Diagnostic};
 use pebo_cas::domain::zero::{Answer, decide, is_zero};
@@ -112,7 +112,7 @@ fn remainder(plant: &Plant, linear: &Linear, row: usize) -> Expr {
         return arena.zero();
     }
     let x: Vec<Expr> = plant.x.iter().map(|s| arena.of_symbol(s.symbol)).collect();
-    crate::plant::matrix::dot(arena, &linear.a11.rows()[row], &x)
+    arena.dot(&linear.a11.rows()[row], &x)
 }
 
 fn refused(
@@ -145,5 +145,5 @@ fn refused(
 
 /// The matrix at the values of the parameters that have one.
 fn valued(arena: &Arena, domain: &Domain, matrix: &Matrix) -> Matrix {
-    matrix.map(|entry| arena.substitute(entry, &domain.fixed))
+    matrix.map(|entry| arena.substitute(*entry, &domain.fixed))
 }

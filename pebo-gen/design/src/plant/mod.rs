@@ -13,7 +13,6 @@ mod conditions;
 mod contradiction;
 mod formula;
 mod known;
-pub(crate) mod matrix;
 mod own;
 mod period;
 #[allow(clippy::module_inception)]
@@ -30,7 +29,9 @@ mod values;
 pub use crate::model::CascadeClass;
 pub use class::{Class, Proposal};
 pub use formula::lower;
-pub use matrix::Matrix;
 pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, RelationForm, State, TransformOrigin};
 pub use scope::Scope;
 pub use settings::Settings;
+
+/// A matrix of formulas.
+pub type Matrix = pebo_cas::linear::Matrix<pebo_cas::Expr>;

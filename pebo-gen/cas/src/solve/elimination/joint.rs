@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::linear::Echelon;
+use crate::linear::{Echelon, Matrix};
 use crate::poly::{Monomial, Poly};
 use crate::tower::{Field, Fraction, Obstacle};
 use crate::{Arena, Expr, Integer, Rational, Symbol};
@@ -120,20 +120,16 @@ impl System<'_> {
             left.chain(monomials.iter().map(|monomial| number(row.right.coefficient(monomial)))).collect()
         };
         let matrix = self.rows.iter().map(row).collect();
-        let (echelon, rest) = Echelon::of(self.field, matrix, width)?;
-        if rest.iter().flatten().any(|entry| !entry.is_zero()) {
+        let (echelon, rest) = Echelon::of(self.field, Matrix::new(matrix), width)?;
+        if rest.rows().iter().flatten().any(|entry| !entry.is_zero()) {
             return Ok(Values::new());
         }
         let basis = monomials.iter().map(|monomial| self.shown(monomial)).collect::<Result<Vec<_>, _>>()?;
         let mut values = Values::new();
-        for (pivot, row) in echelon.rows() {
-            let (left, right) = row.split_at(width);
-            let alone = left.iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
-            if alone {
-                let terms = right.iter().zip(&basis).filter(|(factor, _)| !factor.is_zero());
-                let value = arena.sum(terms.map(|(factor, part)| arena.mul(self.field.show(factor), *part)));
-                values.insert(self.unknowns[pivot].1, value);
-            }
+        for (pivot, row) in echelon.determined() {
+            let terms = row[width..].iter().zip(&basis).filter(|(factor, _)| !factor.is_zero());
+            let value = arena.sum(terms.map(|(factor, part)| arena.mul(self.field.show(factor), *part)));
+            values.insert(self.unknowns[pivot].1, value);
         }
         Ok(values)
     }

@@ -8,11 +8,12 @@
 use std::collections::BTreeMap;
 
 use crate::graph::expr::Expr;
-use crate::linear::rational_matrix;
+use crate::linear::{Matrix, rational_matrix};
 use crate::poly::{Monomial, Poly};
 use crate::{Integer, Rational};
 
-use crate::tower::fraction::{Fraction, negated, primitive};
+use super::units::Multiple;
+use crate::tower::fraction::{Fraction, primitive};
 use crate::tower::{Family, Field, Obstacle};
 
 /// The sine of a sum of n angles has 2^(n-1) terms: a longer sum is one atom.
@@ -20,45 +21,6 @@ const MOST_SUMMANDS: usize = 8;
 
 /// The greatest number of atoms in the search for a linear dependence.
 const MOST_ATOMS: usize = 40;
-
-/// The greatest multiple of a unit, as in `sin(n*q)`: the polynomials have that degree.
-const MOST_MULTIPLES: i64 = 1 << 10;
-
-/// The atoms of arguments, each as an expression and a fraction.
-pub(in crate::tower) type Atoms = BTreeMap<Family, Vec<(Expr, Fraction)>>;
-
-/// The units of atoms: all multiples of an atom that occur are whole multiples of its unit.
-#[derive(Default, Debug)]
-pub(in crate::tower) struct Units(BTreeMap<(Family, Expr), Rational>);
-
-/// A multiple of an atom in its units.
-#[derive(PartialEq, Eq, Debug)]
-pub(in crate::tower) struct Multiple {
-    pub(in crate::tower) unit: Rational,
-    pub(in crate::tower) times: i64,
-    /// True if the unit had to become finer: kernels made of the one before do not go with it.
-    pub(in crate::tower) finer: bool,
-}
-
-impl Units {
-    /// The number of units in a multiple of an atom; a finer unit is taken if it is no integer.
-    pub(in crate::tower) fn multiple(
-        &mut self,
-        family: Family,
-        atom: Expr,
-        factor: &Rational,
-    ) -> Result<Multiple, Obstacle> {
-        let unit = self.0.entry((family, atom)).or_insert_with(|| factor.abs());
-        let common = unit.gcd(factor);
-        let finer = common != *unit;
-        *unit = common;
-        let times = factor.checked_div(unit).and_then(|n| n.to_i64()).ok_or(Obstacle::TooLarge)?;
-        if times.abs() > MOST_MULTIPLES {
-            return Err(Obstacle::TooLarge);
-        }
-        Ok(Multiple { unit: unit.clone(), times, finer })
-    }
-}
 
 impl Field<'_> {
     /// The number of an atom's units in a multiple.
@@ -132,12 +94,12 @@ impl Field<'_> {
             }
             let den = argument.den.scale(&scale);
             for term in remainder {
-                pieces.push(self.fraction_of(&term, &den)?);
+                pieces.push(self.quotient(&term, &den)?);
             }
         } else {
             for (monomial, coefficient) in argument.num.terms() {
                 let term = Poly::from_terms([(monomial, coefficient.clone())])?;
-                pieces.push(self.fraction_of(&term, &argument.den)?);
+                pieces.push(self.quotient(&term, &argument.den)?);
             }
         }
         Ok(pieces)
@@ -170,7 +132,7 @@ impl Field<'_> {
         let mut key = Fraction { num, den };
         if key.num.leading_coefficient().is_negative() {
             factor = -&factor;
-            key = negated(&key);
+            key = key.opposite();
         }
         Ok((self.show(&key), key, factor))
     }
@@ -181,14 +143,7 @@ impl Field<'_> {
         wanted: &Fraction,
         atoms: &[(Expr, Fraction)],
     ) -> Result<Option<Vec<(Expr, Rational)>>, Obstacle> {
-        let mut common = wanted.den.clone();
-        for (_, atom) in atoms {
-            common = common.lcm(&atom.den, self.limit())?;
-        }
-        let mut columns = Vec::with_capacity(atoms.len() + 1);
-        for fraction in atoms.iter().map(|(_, atom)| atom).chain([wanted]) {
-            columns.push(self.over_denominator(fraction, &common)?);
-        }
+        let (columns, _) = self.over_common_denominator(atoms.iter().map(|(_, atom)| atom).chain([wanted]))?;
         let mut rows: BTreeMap<Monomial, Vec<Rational>> = BTreeMap::new();
         for (column, poly) in columns.iter().enumerate() {
             for (monomial, coefficient) in poly.terms() {
@@ -196,8 +151,8 @@ impl Field<'_> {
                 row[column] = Rational::from(coefficient.clone());
             }
         }
-        let rows: Vec<_> = rows.into_values().collect();
-        let Some(solution) = rational_matrix::solution(&rows, atoms.len(), self.limit())? else { return Ok(None) };
+        let matrix = Matrix::new(rows.into_values().collect());
+        let Some(solution) = rational_matrix::solution(&matrix, atoms.len(), self.limit())? else { return Ok(None) };
         let used = atoms.iter().zip(solution).filter(|(_, share)| !share.is_zero());
         Ok(Some(used.map(|((atom, _), share)| (*atom, share)).collect()))
     }
@@ -232,24 +187,5 @@ mod tests {
             let shown: Vec<String> = pieces.iter().map(|piece| arena.print(field.show(piece))).collect();
             assert_eq!(shown, expected);
         }
-    }
-
-    #[test]
-    fn units_become_as_fine_as_their_multiples_need() {
-        let arena = Arena::new();
-        let [x, y] = ["x", "y"].map(|name| arena.variable(name));
-        let mut units = Units::default();
-        let mut of = |atom, n, d| {
-            let Multiple { unit, times, finer } =
-                units.multiple(Family::Angle, atom, &Rational::new(n, d).unwrap()).unwrap();
-            (unit.to_string(), times, finer)
-        };
-        assert_eq!(of(x, 1, 2), ("1/2".to_owned(), 1, false));
-        assert_eq!(of(x, -3, 2), ("1/2".to_owned(), -3, false));
-        assert_eq!(of(x, 1, 3), ("1/6".to_owned(), 2, true), "what had units of a half is made anew");
-        assert_eq!(of(x, 1, 2), ("1/6".to_owned(), 3, false));
-        assert_eq!(of(y, 5, 1), ("5".to_owned(), 1, false), "each atom has its own");
-        let huge = units.multiple(Family::Angle, x, &Rational::from(MOST_MULTIPLES));
-        assert_eq!(huge, Err(Obstacle::TooLarge));
     }
 }

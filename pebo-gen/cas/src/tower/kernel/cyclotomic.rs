@@ -10,7 +10,7 @@ use crate::poly::Poly;
 use crate::{Integer, Rational};
 
 use super::AlgebraicRelation;
-use crate::tower::fraction::{Fraction, negated};
+use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 /// The largest m in `cos(pi/m)`: the minimal polynomial has a degree below m.
@@ -28,9 +28,9 @@ impl Field<'_> {
         };
         Ok(match quarters.numerator().rem_u64(4) {
             0 => (sin, cos),
-            1 => (cos, negated(&sin)),
-            2 => (negated(&sin), negated(&cos)),
-            _ => (negated(&cos), sin),
+            1 => (cos, sin.opposite()),
+            2 => (sin.opposite(), cos.opposite()),
+            _ => (cos.opposite(), sin),
         })
     }
 

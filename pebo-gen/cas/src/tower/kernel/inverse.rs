@@ -5,15 +5,14 @@
 //! of a - b is 0 and its cosine is 1, so that a - b is a multiple of 2 pi; and both ranges lie within a half circle, so
 //! that it is zero. The same two steps prove `asin(sin(w)) = w` if the facts keep w on the principal branch.
 
+use crate::Rational;
 use crate::graph::expr::{Expr, Node};
 use crate::graph::function::Function;
 use crate::number::interval::Precision;
 use crate::number::rational::half;
-use crate::{Domain, Facts, Rational};
 
-use super::range::Range;
-use super::trigonometric::Pair;
-use crate::tower::fraction::{Fraction, negated};
+use super::range::{InverseAngle, Pair, Range};
+use crate::tower::fraction::Fraction;
 use crate::tower::{Field, Obstacle};
 
 /// Angles that a new one is compared with.
@@ -21,14 +20,6 @@ const MOST_ANGLES: usize = 8;
 
 /// The largest multiple of pi/12 in a relation: two full turns.
 const MOST_TWELFTHS: i32 = 48;
-
-/// An angle with its sine and cosine.
-#[derive(Clone, Debug)]
-pub(in crate::tower) struct InverseAngle {
-    value: Fraction,
-    pair: Pair,
-    range: Range,
-}
 
 /// `own * new = sum of share * known + twelfths * pi/12`
 struct Guess {
@@ -154,7 +145,7 @@ impl Field<'_> {
     fn holds(&self, guess: &Guess, pair: &Pair, range: &Range, known: &[InverseAngle]) -> Result<bool, Obstacle> {
         let mut total = self.repeated(pair, u64::from(guess.own.unsigned_abs()))?;
         let mut within = range.times(i64::from(guess.own));
-        let opposite = |(sin, cos): Pair| (negated(&sin), cos);
+        let opposite = |(sin, cos): Pair| (sin.opposite(), cos);
         for (index, share) in &guess.shares {
             let other = self.repeated(&known[*index].pair, u64::from(share.unsigned_abs()))?;
             total = self.sum_of_angles(&total, &if *share > 0 { opposite(other) } else { other })?;
@@ -194,15 +185,10 @@ fn ratio(n: i32, d: i32) -> Rational {
     Rational::new(i64::from(n), i64::from(d)).unwrap_or(Rational::ZERO)
 }
 
-/// The domain on which guesses are tried.
-pub(in crate::tower) fn domain_of(facts: &Facts) -> Domain {
-    Domain { facts: facts.clone(), ..Domain::default() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Arena;
+    use crate::{Arena, Facts};
 
     #[test]
     fn half_an_angle_is_determined_only_within_a_half_turn() {
@@ -225,7 +211,7 @@ mod tests {
     fn angles_with_the_same_sine_and_cosine_may_differ_by_a_turn() {
         let arena = Arena::new();
         let field = Field::over(&arena, &Facts::new(), &[]).unwrap();
-        let half_turn = (Fraction::zero(), negated(&Fraction::one()));
+        let half_turn = (Fraction::zero(), Fraction::one().opposite());
         let guess = Guess { own: 1, shares: Vec::new(), twelfths: 12 };
         let is_half_turn = |n: i32| field.holds(&guess, &half_turn, &Range::point(ratio(n, 1)), &[]).unwrap();
         assert!(is_half_turn(1) && !is_half_turn(-1) && !is_half_turn(3));

@@ -3,23 +3,23 @@
 mod absolute_value;
 
 pub(super) mod absolute_angles;
-pub(super) mod argument;
+mod angle_range;
+mod argument;
 mod cyclotomic;
 mod elements;
 mod exponential;
-pub(super) mod inverse;
+mod inverse;
 mod logarithm;
-pub(super) mod radical;
+mod radical;
 pub(super) mod range;
 mod symbol;
-pub(super) mod trigonometric;
+mod trigonometric;
+pub(super) mod units;
 
 use std::ops::Index;
 
 use rustc_hash::FxHashMap;
 
-use super::Field;
-use super::fraction::Fraction;
 use crate::graph::expr::Expr;
 use crate::poly::Poly;
 
@@ -88,26 +88,11 @@ impl Index<u32> for Kernels {
     }
 }
 
-impl Field<'_> {
-    /// The number of the kernel of an expression, entered if it is new.
-    pub(in crate::tower) fn enter(&self, expr: Expr, relation: Option<AlgebraicRelation>, positive: bool) -> u32 {
-        self.round.kernels.borrow_mut().enter(Kernel { expr, relation, positive })
-    }
-
-    /// The kernel as a fraction.
-    pub(in crate::tower) fn entered(
-        &self,
-        expr: Expr,
-        relation: Option<AlgebraicRelation>,
-        positive: bool,
-    ) -> Fraction {
-        Fraction::polynomial(Poly::variable(self.enter(expr, relation, positive)))
-    }
-
-    /// True if a kernel with an algebraic relation occurs.
-    pub(crate) fn has_relations(&self, fraction: &Fraction) -> bool {
-        let kernels = self.round.kernels.borrow();
-        let mut variables = fraction.num.variables().iter().chain(fraction.den.variables());
-        variables.any(|variable| kernels[*variable].relation.is_some())
-    }
+/// A root of a product of parts whose signs are not known.
+#[derive(Clone, Debug)]
+pub(in crate::tower) struct ProductRoot {
+    pub degree: u32,
+    pub negative: bool,
+    pub powers: Vec<(Poly, i64)>,
+    pub kernel: u32,
 }

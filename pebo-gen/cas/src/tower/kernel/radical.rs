@@ -14,20 +14,11 @@ use crate::number::rational::half;
 use crate::poly::Poly;
 use crate::{Integer, Rational, Relation};
 
-use super::AlgebraicRelation;
 use super::elements::UnsignedFactors;
+use super::{AlgebraicRelation, ProductRoot};
 use crate::tower::fraction::Fraction;
 use crate::tower::sign::Sign;
 use crate::tower::{Family, Field, Obstacle};
-
-/// A root of a product of parts whose signs are not known.
-#[derive(Clone, Debug)]
-pub(in crate::tower) struct ProductRoot {
-    degree: u32,
-    negative: bool,
-    powers: Vec<(Poly, i64)>,
-    kernel: u32,
-}
 
 impl Field<'_> {
     /// `base ^ exponent` for an exponent that is not an integer; the real power of a non-negative base.

@@ -29,7 +29,7 @@ impl Field<'_> {
         let denominator = self.show_polynomial(&radicand.den);
         let kernel = self.arena.mul(denominator, self.arena.sub(expr, step.middle));
         let relation = AlgebraicRelation { degree: root.degree, value };
-        let offset = self.fraction_of(&Poly::variable(self.enter(kernel, Some(relation), false)), &radicand.den)?;
+        let offset = self.quotient(&Poly::variable(self.enter(kernel, Some(relation), false)), &radicand.den)?;
         self.add(&middle, &offset)
     }
 }

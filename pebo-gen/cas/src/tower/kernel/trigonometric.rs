@@ -7,12 +7,9 @@
 use crate::graph::expr::{Expr, Node};
 use crate::{Integer, Rational};
 
-use super::range::Range;
-use crate::tower::fraction::{Fraction, negated};
+use super::range::{Pair, Range};
+use crate::tower::fraction::Fraction;
 use crate::tower::{Family, Field, Obstacle};
-
-/// Sine and cosine of one angle.
-pub(in crate::tower) type Pair = (Fraction, Fraction);
 
 impl Field<'_> {
     /// Sine and cosine of an argument.
@@ -44,7 +41,7 @@ impl Field<'_> {
             None => self.kernels_of_angle(self.arena.scale(key, &unit)),
         };
         let (sin, cos) = self.repeated(&basic, times.unsigned_abs())?;
-        Ok(if times < 0 { (negated(&sin), cos) } else { (sin, cos) })
+        Ok(if times < 0 { (sin.opposite(), cos) } else { (sin, cos) })
     }
 
     /// Sine and cosine of `times` the angle, by repeated doubling.

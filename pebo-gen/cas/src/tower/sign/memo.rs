@@ -4,11 +4,48 @@
 //! query alone, because an open query is not repeated within itself: outside of it, the same kernel may have a sharper
 //! sign. It is used until the outermost query ends, and then forgotten.
 
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use super::Sign;
+use super::value::Sign;
+use crate::Relation;
+use crate::graph::expr::Expr;
+use crate::poly::Poly;
+
+/// The memory between queries.
+#[derive(Default, Debug)]
+pub(in crate::tower) struct SignMemory {
+    /// The conditions for the expressions to have values.
+    pub(super) learned: RefCell<Vec<(Expr, Relation)>>,
+    /// Signs of expressions over the box that the facts state.
+    pub(super) boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
+    pub(super) round: KernelSigns,
+}
+
+/// The memory about kernels, discarded with them.
+#[derive(Default, Debug)]
+pub(super) struct KernelSigns {
+    /// Polynomials of known signs: the facts, once they are read, and the conditions for the expressions to have
+    /// values.
+    pub(super) facts: RefCell<Vec<(Poly, Relation)>>,
+    /// True if the facts were read: most problems need no sign.
+    pub(super) read: Cell<bool>,
+    /// The signs of kernels.
+    pub(super) memo: RefCell<Memo>,
+    /// The nesting depth of queries by discriminants.
+    pub(super) depth: Cell<u32>,
+    /// Factors of unknown signs that kernels depend on: with a known sign these would be others.
+    pub(super) undecided: RefCell<BTreeSet<Poly>>,
+}
+
+impl SignMemory {
+    /// Discards the memory about kernels, which are made anew.
+    pub(in crate::tower) fn start_again(&mut self) {
+        self.round = KernelSigns::default();
+    }
+}
 
 /// A kernel, and the number of known facts: with more of them its sign may be another.
 pub(super) type Query = (u32, usize);

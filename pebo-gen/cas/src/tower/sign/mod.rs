@@ -15,66 +15,16 @@ mod memo;
 mod points;
 mod root;
 mod shift;
+mod value;
 
-use std::cell::{Cell, RefCell};
-use std::collections::BTreeSet;
-
-use rustc_hash::FxHashMap;
-
-use crate::Relation;
 use crate::graph::enclosure::Point;
 use crate::graph::expr::Expr;
 use crate::poly::Poly;
 
-use self::memo::Memo;
+pub(in crate::tower) use self::memo::SignMemory;
+pub(in crate::tower) use self::value::Sign;
 use super::fraction::{Fraction, primitive};
 use super::{Field, Obstacle};
-
-/// The sign of a value throughout a domain.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in crate::tower) enum Sign {
-    /// Greater than zero.
-    Positive,
-    /// Greater than or equal to zero.
-    NonNegative,
-    /// Zero.
-    Zero,
-    /// Less than zero.
-    Negative,
-}
-
-/// The memory between queries.
-#[derive(Default, Debug)]
-pub(in crate::tower) struct SignMemory {
-    /// The conditions for the expressions to have values.
-    learned: RefCell<Vec<(Expr, Relation)>>,
-    /// Signs of expressions over the box that the facts state.
-    boxed: RefCell<FxHashMap<Expr, Option<bool>>>,
-    round: KernelSigns,
-}
-
-/// The memory about kernels, discarded with them.
-#[derive(Default, Debug)]
-struct KernelSigns {
-    /// Polynomials of known signs: the facts, once they are read, and the conditions for the expressions to have
-    /// values.
-    facts: RefCell<Vec<(Poly, Relation)>>,
-    /// True if the facts were read: most problems need no sign.
-    read: Cell<bool>,
-    /// The signs of kernels.
-    memo: RefCell<Memo>,
-    /// The nesting depth of queries by discriminants.
-    depth: Cell<u32>,
-    /// Factors of unknown signs that kernels depend on: with a known sign these would be others.
-    undecided: RefCell<BTreeSet<Poly>>,
-}
-
-impl SignMemory {
-    /// Discards the memory about kernels, which are made anew.
-    pub(in crate::tower) fn start_again(&mut self) {
-        self.round = KernelSigns::default();
-    }
-}
 
 /// Decides signs.
 #[derive(Clone, Copy)]
@@ -87,32 +37,6 @@ impl<'a> Field<'a> {
     /// Signs throughout the domain.
     pub fn signs(&self) -> Signs<'_, 'a> {
         Signs { field: self, memory: &self.sign_memory }
-    }
-}
-
-impl Sign {
-    pub(in crate::tower) fn is_positive_or_zero(self) -> bool {
-        self != Self::Negative
-    }
-
-    /// The sign of the negated value, where there is one for it.
-    fn negated(self) -> Option<Self> {
-        match self {
-            Self::Positive => Some(Self::Negative),
-            Self::Negative => Some(Self::Positive),
-            Self::Zero => Some(Self::Zero),
-            Self::NonNegative => None,
-        }
-    }
-
-    fn times(self, other: Self) -> Option<Self> {
-        match (self, other) {
-            (Self::Zero, _) | (_, Self::Zero) => Some(Self::Zero),
-            (Self::Positive, sign) | (sign, Self::Positive) => Some(sign),
-            (Self::Negative, Self::Negative) => Some(Self::Positive),
-            (Self::NonNegative, Self::NonNegative) => Some(Self::NonNegative),
-            _ => None,
-        }
     }
 }
 

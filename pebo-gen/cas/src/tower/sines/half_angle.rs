@@ -9,8 +9,7 @@ use crate::poly::{Monomial, Poly};
 
 use crate::number::rational::half;
 use crate::tower::fraction::Fraction;
-use crate::tower::kernel::range::Range;
-use crate::tower::kernel::trigonometric::Pair;
+use crate::tower::kernel::range::{Pair, Range};
 use crate::tower::{Field, Obstacle};
 
 /// The greatest number of angles in a square.

@@ -16,7 +16,7 @@ use crate::poly::Poly;
 
 use super::fraction::Fraction;
 use super::kernel::AlgebraicRelation;
-use super::kernel::trigonometric::Pair;
+use super::kernel::range::Pair;
 use super::{Field, Obstacle};
 
 /// A power of a sine that a polynomial holds as one of `1 - cos(q)^2`.

@@ -209,7 +209,7 @@ fn flow(plant: &Plant, cascade: &Cascade) -> Vec<Expr> {
     let arena = &plant.arena;
     let Some(lambda) = &cascade.lambda else { return cascade.h.clone() };
     let phi = plant.transform();
-    let moved = lambda.iter().map(|row| crate::plant::matrix::dot(arena, row, &phi));
+    let moved = lambda.iter().map(|row| arena.dot(row, &phi));
     moved.zip(&cascade.h).map(|(moved, h)| arena.add(moved, *h)).collect()
 }
 

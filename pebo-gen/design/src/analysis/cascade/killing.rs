@@ -17,7 +17,6 @@
 
 use crate::plant::Matrix;
 use crate::plant::class::{Mechanical, change_along};
-use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::{Answer, all_zero, decide};
 use pebo_cas::number::rational::half;
 use pebo_cas::tower::Obstacle;
@@ -42,7 +41,7 @@ pub(super) fn offending(
 /// `v' (L_{T_i} M) v / 2`.
 pub(super) fn quadratic(arena: &Arena, plant: &Mechanical, index: usize, v: &[Expr]) -> Expr {
     let change = change_along(arena, &plant.inertia, &plant.frame.column(index), &plant.q);
-    arena.scale(dot(arena, v, &change.apply(arena, v)), &half())
+    arena.scale(arena.dot(v, &change.apply(arena, v)), &half())
 }
 
 /// `B_(i)` of Assumption 3, with the sum to the number of positions and derivatives by these.
@@ -61,7 +60,7 @@ fn structure(arena: &Arena, domain: &Domain, plant: &Mechanical, index: usize) -
         let weight = arena.scale(frame.at(j, index), &half());
         let slope = inverse_metric.derivative(arena, *position);
         let term = frame.mul(arena, &slope).mul(arena, &transposed);
-        total = total.add(arena, &term.map(|e| arena.mul(weight, e)));
+        total = total.add(arena, &term.map(|e| arena.mul(weight, *e)));
     }
     Ok(total)
 }

@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 
 use crate::plant::Plant;
 use crate::plant::class::Mechanical;
-use crate::plant::matrix::dot;
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::forms::tidy::{operations_of, proved_shortest};
 use pebo_cas::{Domain, Expr};
@@ -32,5 +31,5 @@ fn apart(plant: &Plant, domain: &Domain, rate: Expr) -> Expr {
     let left = if is_zero(arena, left, domain) { arena.zero() } else { proved_shortest(arena, domain, left) };
     let slopes: Vec<Expr> = plant.u.iter().map(|input| arena.derivative(rate, *input)).collect();
     let inputs: Vec<Expr> = plant.u.iter().map(|input| arena.of_symbol(*input)).collect();
-    arena.add(dot(arena, &slopes, &inputs), left)
+    arena.add(arena.dot(&slopes, &inputs), left)
 }

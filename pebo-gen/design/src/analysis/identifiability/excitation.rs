@@ -14,7 +14,7 @@ use pebo_cas::forms::oriented::oriented;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Rational, Symbol};
 
-use super::singular::{Volume, ZeroSet, gram};
+use super::singular::{Volume, ZeroSet};
 use crate::analysis::design::{Gram, Positive};
 use pebo_cas::forms::tidy::{shorter, shortest};
 
@@ -46,13 +46,8 @@ fn worked_out(
 ) -> Result<Gram, Obstacle> {
     let columns = phi_1.first().map_or(0, Vec::len);
     let arena = &plant.arena;
-    let entries: Vec<Expr> = phi_1.iter().flatten().copied().collect();
-    let field = Field::over(arena, &domain.facts, &entries)?;
-    let rows = phi_1
-        .iter()
-        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
-    let product = gram(&field, &rows, columns)?;
+    let field = Field::over(arena, &domain.facts, &phi_1.concat())?;
+    let product = field.matrix(phi_1)?.gram(&field, columns)?;
     let columns: Vec<Vec<Expr>> = (0..columns).map(|column| phi_1.iter().map(|row| row[column]).collect()).collect();
     let written = |i: usize, j: usize| arena.dot(&columns[i], &columns[j]);
     let entry = |i: usize, j: usize, product: &Fraction| {
@@ -60,7 +55,7 @@ fn worked_out(
         oriented(arena, domain, printed)
     };
     let line = |(i, row): (usize, &Vec<Fraction>)| row.iter().enumerate().map(|(j, e)| entry(i, j, e)).collect();
-    let matrix: Vec<Vec<Expr>> = product.iter().enumerate().map(line).collect();
+    let matrix: Vec<Vec<Expr>> = product.rows().iter().enumerate().map(line).collect();
     let square = volume.square;
     let root = volume.printed();
     // Never negative, it is positive where it does not vanish.

@@ -11,8 +11,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
-use pebo_cas::linear::Echelon;
 use pebo_cas::linear::determinant::determinant;
+use pebo_cas::linear::{Echelon, Matrix};
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
@@ -191,7 +191,8 @@ impl<'a> Volume<'a> {
                 .map_or(Fraction::zero(), |value| Fraction::constant(&Rational::from(value.clone())))
         };
         let row = |poly: &Poly| monomials.iter().map(|monomial| number(poly, monomial)).collect();
-        let (reduced, _) = Echelon::of(&self.field, coefficients.iter().map(row).collect(), monomials.len())?;
+        let (reduced, _) =
+            Echelon::of(&self.field, Matrix::new(coefficients.iter().map(row).collect()), monomials.len())?;
         for (_, row) in reduced.rows() {
             let mut sum = Fraction::zero();
             for (value, monomial) in row.iter().zip(&monomials) {
@@ -231,11 +232,8 @@ impl<'a> Volume<'a> {
 /// The determinant of a square matrix, of any other that of `M' M`.
 fn core_of(field: &Field<'_>, matrix: &[Vec<Expr>]) -> Result<Fraction, Obstacle> {
     let columns = matrix.first().map_or(0, Vec::len);
-    let rows = matrix
-        .iter()
-        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
-    determinant(field, if rows.len() == columns { rows } else { gram(field, &rows, columns)? })
+    let matrix = field.matrix(matrix)?;
+    determinant(field, if matrix.height() == columns { matrix } else { matrix.gram(field, columns)? })
 }
 
 fn constants(plant: &Plant) -> BTreeSet<Symbol> {
@@ -299,26 +297,6 @@ fn factors(arena: &Arena, expr: Expr) -> Vec<(Expr, Rational)> {
         Node::Number(_) => Vec::new(),
         _ => vec![(expr, Rational::ONE)],
     }
-}
-
-/// `Phi' Phi`
-pub(super) fn gram(
-    field: &Field<'_>,
-    matrix: &[Vec<Fraction>],
-    columns: usize,
-) -> Result<Vec<Vec<Fraction>>, Obstacle> {
-    let mut gram = vec![vec![Fraction::zero(); columns]; columns];
-    for i in 0..columns {
-        for j in i..columns {
-            let mut entry = Fraction::zero();
-            for row in matrix {
-                entry = field.add(&entry, &field.mul(&row[i], &row[j])?)?;
-            }
-            gram[j][i] = entry.clone();
-            gram[i][j] = entry;
-        }
-    }
-    Ok(gram)
 }
 
 #[cfg(test)]

@@ -11,6 +11,8 @@ use std::collections::BTreeSet;
 use crate::plant::Plant;
 use pebo_cas::domain::cells::walls;
 use pebo_cas::domain::manifold::Manifold;
+use pebo_cas::linear::Matrix;
+use pebo_cas::linear::comparison::by_monomials;
 use pebo_cas::linear::determinant::largest_minors;
 use pebo_cas::linear::rank::full_rank;
 use pebo_cas::poly::{Monomial, Poly};
@@ -113,8 +115,9 @@ fn of_coinciding_walls(plant: &Plant, domain: &Domain, cells: &[CellRows<'_>]) -
                 special.complete = false;
                 continue;
             };
-            let both = parted.by_monomials(&[first, second])?;
-            let zeros = common_zeros(&field, domain, &minors(&field, &both, 2)?)?;
+            let both = by_monomials(&field, &[first.clone(), second.clone()])?;
+            let columns = Matrix::build(2, both.height(), |column, row| both.at(row, column));
+            let zeros = common_zeros(&field, domain, &largest_minors(&field, &columns)?)?;
             special.complete &= zeros.complete;
             zeros.nonzero.into_iter().for_each(|zero| special.add(zero));
         }
@@ -132,8 +135,9 @@ fn of_dependent_rows(
     let cells: Vec<&CellRows<'_>> = cells.iter().collect();
     let Some(rows) = coefficients(plant, domain, &cells)? else { return Ok(SpecialValues::none(false)) };
     let field = Field::over(&plant.arena, &domain.facts, &rows.concat())?;
-    let row = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect::<Result<Vec<_>, _>>();
-    let minors = minors(&field, &rows.iter().map(row).collect::<Result<Vec<_>, _>>()?, unknowns)?;
+    let matrix = field.matrix(&rows)?;
+    let columns = Matrix::build(unknowns, matrix.height(), |column, row| matrix.at(row, column));
+    let minors = largest_minors(&field, &columns)?;
     if minors.is_empty() {
         return Ok(SpecialValues::none(false));
     }
@@ -191,37 +195,11 @@ impl Coefficients<'_> {
     /// The same of a row, one for each power product: a common denominator changes no combination.
     fn of_row(&self, row: &[Expr]) -> Result<Option<Vec<Vec<Fraction>>>, Obstacle> {
         let entries = row.iter().map(|entry| self.field.fraction(*entry)).collect::<Result<Vec<_>, _>>()?;
-        let mut common = Poly::one();
-        for entry in &entries {
-            common = common.lcm(entry.denominator(), self.field.limit())?;
-        }
-        let mut parts = Vec::new();
-        for entry in &entries {
-            let Some(part) = self.of_numerator(&self.field.over_denominator(entry, &common)?) else { return Ok(None) };
-            parts.push(part);
-        }
-        Ok(Some(self.by_monomials(&parts.iter().collect::<Vec<_>>())?))
+        let (numerators, _) = self.field.over_common_denominator(&entries)?;
+        let parts: Option<Vec<_>> = numerators.iter().map(|numerator| self.of_numerator(numerator)).collect();
+        let Some(parts) = parts else { return Ok(None) };
+        Ok(Some(by_monomials(self.field, &parts)?.into_rows()))
     }
-
-    /// The coefficients of several formulas, a row for each power product.
-    fn by_monomials(&self, formulas: &[&Vec<(Monomial, Poly)>]) -> Result<Vec<Vec<Fraction>>, Obstacle> {
-        let monomials: BTreeSet<&Monomial> =
-            formulas.iter().flat_map(|formula| formula.iter()).map(|(monomial, _)| monomial).collect();
-        let row = |monomial: &&Monomial| {
-            let entry = |formula: &&Vec<(Monomial, Poly)>| match formula.iter().find(|(own, _)| own == *monomial) {
-                Some((_, coefficient)) => self.field.of_polynomial(coefficient),
-                None => Ok(Fraction::zero()),
-            };
-            formulas.iter().map(entry).collect::<Result<Vec<_>, _>>()
-        };
-        monomials.iter().map(row).collect()
-    }
-}
-
-/// The largest minors of rows of so many columns, of which there are more, that are not zero.
-fn minors(field: &Field<'_>, rows: &[Vec<Fraction>], columns: usize) -> Result<Vec<Poly>, Obstacle> {
-    let column = |column: usize| rows.iter().map(|row| row[column].clone()).collect();
-    largest_minors(field, &(0..columns).map(column).collect::<Vec<Vec<Fraction>>>())
 }
 
 /// The factors that polynomials in the parameters have in common; complete if they are zero at once nowhere else. Of no

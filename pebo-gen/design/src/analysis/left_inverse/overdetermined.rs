@@ -7,8 +7,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::plant::Matrix;
 use crate::plant::Plant;
-use crate::plant::matrix::Matrix;
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::{Domain, Expr, Symbol};
 
@@ -50,6 +50,6 @@ pub(super) fn by_least_squares(
     let rest = |formula: Expr| at_known(arena.substitute(formula, &nowhere));
     let moved: Vec<Expr> = rows.iter().map(|(z, formula, _)| arena.sub(arena.of_symbol(*z), rest(*formula))).collect();
     // The factors of z one by one: their sum would have one denominator.
-    let factors = inverse.mul(arena, &transposed).map(|factor| shortest(arena, domain, factor));
+    let factors = inverse.mul(arena, &transposed).map(|factor| shortest(arena, domain, *factor));
     states.into_iter().zip(factors.apply(arena, &moved)).collect()
 }

@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 
 use crate::model::{Electromechanical as WrittenClass, Formula as WrittenFormula, Model};
 use crate::plant::Matrix;
-use crate::plant::matrix::dot;
 use crate::plant::plant::{Assumption, Formula, Output, State};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 use pebo_cas::number::rational::half;
@@ -84,21 +83,21 @@ pub(super) fn expand(
     let magnet_slope: Vec<Expr> = magnets.iter().map(|e| arena.derivative(*e, *position)).collect();
     let driven: Vec<Expr> = (0..n)
         .map(|k| {
-            let voltage = if u.is_empty() { arena.zero() } else { dot(arena, &voltages.rows()[k], &u) };
-            arena.sub(voltage, dot(arena, &resistance.rows()[k], &i))
+            let voltage = if u.is_empty() { arena.zero() } else { arena.dot(&voltages.rows()[k], &u) };
+            arena.sub(voltage, arena.dot(&resistance.rows()[k], &i))
         })
         .collect();
     // L i', coil by coil.
     let induced: Vec<Expr> = (0..n)
         .map(|k| {
-            let moving = arena.add(dot(arena, &slope.rows()[k], &i), magnet_slope[k]);
+            let moving = arena.add(arena.dot(&slope.rows()[k], &i), magnet_slope[k]);
             arena.sub(driven[k], arena.mul(omega, moving))
         })
         .collect();
     let rates = inverse.apply(arena, &induced);
     let acceleration = inertia.map(|inertia| {
         let force =
-            arena.add(arena.scale(dot(arena, &i, &slope.apply(arena, &i)), &half()), dot(arena, &i, &magnet_slope));
+            arena.add(arena.scale(arena.dot(&i, &slope.apply(arena, &i)), &half()), arena.dot(&i, &magnet_slope));
         let drag = arena.mul(friction.unwrap_or_else(|| arena.zero()), omega);
         let against = arena.add(drag, load.unwrap_or_else(|| arena.zero()));
         arena.div(arena.sub(force, against), inertia)
@@ -112,7 +111,7 @@ pub(super) fn expand(
         Output { symbol: *symbol, rate: rate.map(|expr| Formula { expr, span }), value: None, span: name.span }
     });
     let phi = (0..n).map(|k| Formula {
-        expr: arena.add(dot(arena, &inductance.rows()[k], &i), magnets[k]),
+        expr: arena.add(arena.dot(&inductance.rows()[k], &i), magnets[k]),
         span: flux_span(l, written.mu.as_ref(), k),
     });
     Ok(Expansion {

@@ -7,7 +7,6 @@
 
 use crate::model::Lti;
 use crate::plant::Matrix;
-use crate::plant::matrix::dot;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::linear::solve_each;
 use pebo_cas::poly::Poly;
@@ -79,7 +78,7 @@ pub(super) fn expand(
     let open = |obstacle: Obstacle| Stop::from(unresolved("the transform", first.span, &obstacle));
     // Values of the parameters at which ranks differ from the generic ones are inserted: the rest holds for these
     // values alone.
-    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(entry, &context.domain.fixed));
+    let valued = |matrix: &Matrix| matrix.map(|entry| arena.substitute(*entry, &context.domain.fixed));
     let ranks = |a11: &Matrix, a21: &Matrix| -> Result<[usize; 2], Obstacle> {
         let both = Matrix::new(a11.rows().iter().chain(a21.rows()).cloned().collect());
         Ok([a21.rank(arena, facts)?, both.rank(arena, facts)?])
@@ -118,8 +117,8 @@ pub(super) fn expand(
     let symbols = |list: &[pebo_cas::Symbol]| -> Vec<Expr> { list.iter().map(|s| arena.of_symbol(*s)).collect() };
     let (x, y, u) = (symbols(names.x), symbols(names.y), symbols(names.u));
     let rate = |row: usize, [a, b, c]: [&Matrix; 3]| {
-        let driven = if u.is_empty() { arena.zero() } else { dot(arena, &c.rows()[row], &u) };
-        arena.sum([dot(arena, &a.rows()[row], &x), dot(arena, &b.rows()[row], &y), driven])
+        let driven = if u.is_empty() { arena.zero() } else { arena.dot(&c.rows()[row], &u) };
+        arena.sum([arena.dot(&a.rows()[row], &x), arena.dot(&b.rows()[row], &y), driven])
     };
     let span = |matrix: &crate::model::Matrix, row: usize| match matrix.rows.get(row) {
         Some(entries) => entries[0].span.to(entries[entries.len() - 1].span),
@@ -136,7 +135,7 @@ pub(super) fn expand(
         span: name.span,
     });
     let phi = (0..nz).map(|i| Formula {
-        expr: arena.add(dot(arena, &t1.rows()[i], &x), dot(arena, &t2.rows()[i], &y)),
+        expr: arena.add(arena.dot(&t1.rows()[i], &x), arena.dot(&t2.rows()[i], &y)),
         span: span(written.t1.as_ref().unwrap_or(first), i),
     });
     let proposal = propose(context, [&t1, &t2], [&a21, &a22, &b2], names, is_long).map_err(open)?;
@@ -164,9 +163,11 @@ fn transform(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> Result<(
     }
     let mut unsolved = Vec::new();
     let mut rows = Vec::new();
-    for (index, solution) in solve_each(&field, system, a21.height())?.into_iter().enumerate() {
+    for (index, solution) in
+        solve_each(&field, pebo_cas::linear::Matrix::new(system), a21.height())?.into_iter().enumerate()
+    {
         if let Some(solution) = solution {
-            rows.push(solution.iter().map(|e| field.show(e)).collect());
+            rows.push(field.show_all(&solution));
         } else {
             unsolved.push(index);
             rows.push(vec![arena.zero(); a21.height()]);
@@ -180,7 +181,7 @@ fn transform(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> Result<(
 fn by_cofactors(context: &ClassContext<'_>, a11: &Matrix, a21: &Matrix) -> (Matrix, Expr) {
     let arena = context.arena;
     let (adjugate, determinant) = a21.adjugate(arena);
-    let over_determinant = |entry: Expr| arena.neg(arena.div(entry, determinant));
+    let over_determinant = |entry: &Expr| arena.neg(arena.div(*entry, determinant));
     (a11.mul(arena, &adjugate).map(over_determinant), determinant)
 }
 
@@ -218,7 +219,7 @@ fn propose(
     let transposed = t1.transpose();
     let Some(gram) = transposed.mul(arena, t1).inverse(arena, facts)? else { return Ok(Proposal::default()) };
     let left = gram.mul(arena, &transposed).normal(arena, facts)?;
-    let minus = |matrix: &Matrix| matrix.map(|entry| arena.neg(entry));
+    let minus = |matrix: &Matrix| matrix.map(|entry| arena.neg(*entry));
     let short = |matrix: Matrix| if is_long { Ok(matrix) } else { matrix.normal(arena, facts) };
     let on_y = short(minus(&left.mul(arena, t2)))?;
     let factors = a21.mul(arena, &left).normal(arena, facts)?;
@@ -230,10 +231,10 @@ fn propose(
         .x
         .iter()
         .enumerate()
-        .map(|(i, symbol)| (*symbol, arena.add(dot(arena, &left.rows()[i], &z), dot(arena, &on_y.rows()[i], &y))));
+        .map(|(i, symbol)| (*symbol, arena.add(arena.dot(&left.rows()[i], &z), arena.dot(&on_y.rows()[i], &y))));
     let rates = names.y.iter().enumerate().map(|(i, symbol)| {
-        let driven = if u.is_empty() { arena.zero() } else { dot(arena, &b2.rows()[i], &u) };
-        (*symbol, (arena.add(dot(arena, &rest.rows()[i], &y), driven), factors.rows()[i].clone()))
+        let driven = if u.is_empty() { arena.zero() } else { arena.dot(&b2.rows()[i], &u) };
+        (*symbol, (arena.add(arena.dot(&rest.rows()[i], &y), driven), factors.rows()[i].clone()))
     });
     Ok(Proposal { phi_left: states.collect(), rates: rates.collect() })
 }

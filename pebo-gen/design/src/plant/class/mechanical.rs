@@ -13,7 +13,6 @@ use std::collections::BTreeSet;
 
 use crate::model::{Formula as WrittenFormula, Mechanical as WrittenClass};
 use crate::plant::Matrix;
-use crate::plant::matrix::dot;
 use crate::plant::plant::{Assumption, Formula, Output, State};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::domain::zero::{Answer, decide, refute};
@@ -70,7 +69,7 @@ impl InVelocities {
         let rates = names.y.iter().zip(external);
         let rates = rates.map(|(q, external)| arena.add(inertial(arena, inertia, *q, &velocities), *external));
         let rates = rates.collect();
-        let kinetic = arena.scale(dot(arena, &velocities, &inertia.apply(arena, &velocities)), &half());
+        let kinetic = arena.scale(arena.dot(&velocities, &inertia.apply(arena, &velocities)), &half());
         Self { velocities, energy: arena.add(kinetic, potential), rates }
     }
 }
@@ -79,7 +78,7 @@ impl InVelocities {
 fn inertial(arena: &Arena, inertia: &Matrix, q: Symbol, v: &[Expr]) -> Expr {
     let slope = inertia.derivative(arena, q);
     let of_row = |i: usize| {
-        let beside = dot(arena, &slope.rows()[i][i + 1..], &v[i + 1..]);
+        let beside = arena.dot(&slope.rows()[i][i + 1..], &v[i + 1..]);
         let own = arena.scale(arena.mul(slope.at(i, i), v[i]), &half());
         arena.mul(v[i], arena.add(own, beside))
     };
@@ -135,7 +134,7 @@ pub(super) fn expand(
     };
     let force = |index: usize| {
         let slope = arena.neg(arena.derivative(potential, names.y[index]));
-        if u.is_empty() { slope } else { arena.add(slope, dot(arena, &forces.rows()[index], &u)) }
+        if u.is_empty() { slope } else { arena.add(slope, arena.dot(&forces.rows()[index], &u)) }
     };
     let external: Vec<Expr> = (0..n).map(force).collect();
     let in_velocities = is_implicit.then(|| InVelocities::of(arena, names, &inertia, (potential, &external)));
@@ -150,7 +149,7 @@ pub(super) fn expand(
         span: name.span,
     });
     let given = written.t.is_some();
-    let phi = (0..n).filter(|_| given).map(|i| Formula { expr: dot(arena, &frame.column(i), &p), span: column(t, i) });
+    let phi = (0..n).filter(|_| given).map(|i| Formula { expr: arena.dot(&frame.column(i), &p), span: column(t, i) });
     // T^-T = M T W^-1, where the inverse of a large T has grown out of proportion.
     let inverse = inverse_frame.transpose().apply(arena, &z);
     let product = inertia.mul(arena, &frame).mul(arena, &inverse_metric).apply(arena, &z);
@@ -161,7 +160,7 @@ pub(super) fn expand(
         rates: names.y.iter().zip(velocity.rows()).map(|(s, row)| (*s, (arena.zero(), row.clone()))).collect(),
     };
     // p' M^-1 p is z' W^-1 z.
-    let of_work = [dot(arena, &p, &rates), dot(arena, &at_p, &inverse_metric.apply(arena, &at_p))];
+    let of_work = [arena.dot(&p, &rates), arena.dot(&at_p, &inverse_metric.apply(arena, &at_p))];
     let doubled = if is_implicit { of_work[0] } else { shorter(arena, of_work) };
     let energy = arena.add(arena.scale(doubled, &half()), potential);
     Ok(Expansion {
@@ -242,7 +241,7 @@ pub fn change_along(arena: &Arena, m: &Matrix, field: &[Expr], q: &[Symbol]) -> 
     let mut total = drag.add(arena, &drag.transpose());
     for (component, q) in field.iter().zip(q) {
         if !arena.is_zero(*component) {
-            total = total.add(arena, &m.derivative(arena, *q).map(|e| arena.mul(*component, e)));
+            total = total.add(arena, &m.derivative(arena, *q).map(|e| arena.mul(*component, *e)));
         }
     }
     total
@@ -280,7 +279,7 @@ fn implicit_inverse(
     }
     let (adjugate, determinant) = metric.adjugate(arena);
     let exists = refute(arena, determinant, context.domain).is_some();
-    Ok(exists.then(|| adjugate.map(|cofactor| arena.div(cofactor, determinant))))
+    Ok(exists.then(|| adjugate.map(|cofactor| arena.div(*cofactor, determinant))))
 }
 
 /// The product with a vector, each component over one denominator where that is shorter, except for inverses that are

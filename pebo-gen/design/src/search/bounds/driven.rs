@@ -7,7 +7,7 @@
 //! of y.
 
 use pebo_cas::linear::Echelon;
-use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
 use crate::search::problem::Problem;
@@ -28,11 +28,10 @@ fn free_slopes(problem: &Problem<'_>) -> Result<Vec<bool>, Obstacle> {
     let fields: Vec<Vec<Expr>> =
         fields.map(|input| along(&problem.x, *input)).filter(|field| field.iter().all(is_free)).collect();
     let field = Field::over(arena, &problem.domain.facts, &fields.concat())?;
-    let rows = fields.iter().map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<Fraction>, _>>());
-    let (echelon, _) = Echelon::of(&field, rows.collect::<Result<_, _>>()?, problem.x.len())?;
+    let (echelon, _) = Echelon::of(&field, field.matrix(&fields)?, problem.x.len())?;
     let mut driven = vec![false; problem.x.len()];
-    for (pivot, row) in echelon.rows() {
-        driven[pivot] = row.iter().enumerate().all(|(column, entry)| column == pivot || entry.is_zero());
+    for (pivot, _) in echelon.determined() {
+        driven[pivot] = true;
     }
     Ok(driven)
 }

@@ -254,7 +254,7 @@ fn at(problem: &Problem<'_>, unknowns: &Unknowns, jets: &Jets, order: usize) -> 
         let relations = certificate(problem, &prime, (&rows, &images), (split, pivots))?;
         let equations = relations.iter().map(|(_, equations)| *equations).max().unwrap_or(0);
         bound.evidence = Evidence::Series { equations, order };
-        let relations = reduced(problem, &relations.into_iter().map(|(relation, _)| relation).collect::<Vec<_>>())?;
+        let relations = reduced(problem, relations.into_iter().map(|(relation, _)| relation).collect())?;
         let number = |value: &Rational| problem.arena.number(value.clone());
         bound.relations = relations.iter().map(|relation| relation.iter().map(number).collect()).collect();
         bound.proved = bound.relations.len() == pivots;
@@ -315,10 +315,10 @@ fn certificate(
 }
 
 /// The same relations in their simplest form: the annihilator of their annihilator.
-fn reduced(problem: &Problem<'_>, relations: &[Vec<Rational>]) -> Option<Vec<Vec<Rational>>> {
+fn reduced(problem: &Problem<'_>, relations: Vec<Vec<Rational>>) -> Option<Vec<Vec<Rational>>> {
     let (width, budget) = (problem.x.len(), problem.arena.budget());
     let gradients = null_space_of_numbers(relations, width, budget)?;
-    null_space_of_numbers(&gradients, width, budget)
+    null_space_of_numbers(gradients, width, budget)
 }
 
 /// The combination of these rows that vanishes left of the split, if it is the only one.
@@ -327,7 +327,7 @@ fn combination(problem: &Problem<'_>, rows: &[&Vec<Rational>], split: usize) -> 
         .map(|column| rows.iter().map(|row| row[column].clone()).collect::<Vec<Rational>>())
         .filter(|row| row.iter().any(|entry| !entry.is_zero()))
         .collect();
-    let vectors = null_space_of_numbers(&transposed, rows.len(), problem.arena.budget())?;
+    let vectors = null_space_of_numbers(transposed, rows.len(), problem.arena.budget())?;
     let [vector] = vectors.as_slice() else { return None };
     Some(vector.clone())
 }

@@ -18,8 +18,8 @@ pub(super) mod products;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
+use pebo_cas::linear::{Echelon, Matrix};
 use pebo_cas::poly::{Monomial, Poly};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
@@ -124,7 +124,7 @@ fn functions_of(problem: &Problem<'_>, formula: Expr) -> Result<Option<Vec<Expr>
     }
     let known: Vec<u32> = known.into_iter().collect();
     let parts = numerator.collect(&known).into_iter().map(|(_, part)| part);
-    let mut found = combinations(&field, parts, (&hidden, &divisor))?;
+    let mut found = combinations(&field, parts.into_iter(), (&hidden, &divisor))?;
     found.retain(|function| arena.depends_on(*function, &problem.hidden));
     Ok(Some(found))
 }
@@ -151,7 +151,7 @@ fn combinations(
     };
     let row = |part| monomials.iter().map(|monomial| entry(part, monomial)).collect::<Result<Vec<_>, _>>();
     let rows = parts.iter().map(row).collect::<Result<Vec<_>, Obstacle>>()?;
-    let (echelon, _) = Echelon::of(field, rows, monomials.len())?;
+    let (echelon, _) = Echelon::of(field, Matrix::new(rows), monomials.len())?;
     let apart = divisor.term_count() == 1;
     let of_row = |(_, row): (usize, &[Fraction])| -> Result<Expr, Obstacle> {
         let mut terms = Vec::new();
@@ -183,14 +183,9 @@ fn plainest(problem: &Problem<'_>, found: &[Expr]) -> Result<Vec<Expr>, Obstacle
     let arena = problem.arena;
     let field = Field::over(arena, &problem.domain.facts, found)?;
     let fractions = found.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>()?;
-    let mut common = Poly::one();
-    for fraction in &fractions {
-        common = common.lcm(fraction.denominator(), field.limit())?;
-    }
-    let parts = fractions.iter().map(|fraction| field.over_denominator(fraction, &common));
-    let parts = parts.collect::<Result<Vec<Poly>, _>>()?.into_iter();
+    let (parts, common) = field.over_common_denominator(&fractions)?;
     let hidden = field.kernels_of(&problem.hidden);
     // A constant factor is not part of a function.
     let Some([divisor, _]) = apart(&field, &common, [&hidden, &BTreeSet::new()])? else { return Ok(found.to_vec()) };
-    combinations(&field, parts, (&hidden, &divisor))
+    combinations(&field, parts.into_iter(), (&hidden, &divisor))
 }

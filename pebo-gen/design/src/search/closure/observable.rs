@@ -5,10 +5,9 @@
 //! functions of y and u, with those that occur in their rates, and so on: the others are unobservable. `b*S - g` of
 //! b*S, b and g, where an output's rate is `(b*S - g)*I - b*I^2`, with b.
 
-use crate::plant::matrix::dot;
 use pebo_cas::Expr;
-use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::{combine, equations};
+use pebo_cas::linear::{Echelon, Matrix};
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
 use crate::search::problem::Problem;
@@ -22,19 +21,16 @@ pub(in crate::search) fn observable(problem: &Problem<'_>, functions: &[Expr]) -
     let Some(rows) = rows(problem, &targets, functions)? else { return Ok(functions.to_vec()) };
     let (outputs, flow) = rows.split_at(rows.len() - functions.len());
     let field = Field::over(arena, &problem.domain.facts, &rows.concat())?;
-    let columns = functions.len();
+    let (flow, columns) = (Matrix::new(flow.to_vec()).transpose(), functions.len());
     let spanned = |known: Vec<Vec<Fraction>>, rows: &[Vec<Expr>]| -> Result<Echelon, Obstacle> {
         // Factors of different functions of the signals, which are constants.
-        let vectors = [known, equations(&field, rows, &problem.signals)?].concat();
-        Ok(Echelon::of(&field, vectors, columns)?.0)
+        let vectors = [known, equations(&field, rows, &problem.signals)?.into_rows()].concat();
+        Ok(Echelon::of(&field, Matrix::new(vectors), columns)?.0)
     };
     let mut span = spanned(Vec::new(), outputs)?;
     loop {
         // The rate of a combination, as a combination.
-        let along = |(_, vector): (usize, &[Fraction])| -> Vec<Expr> {
-            let printed: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
-            (0..columns).map(|to| dot(arena, &printed, &column(flow, to))).collect()
-        };
+        let along = |(_, vector): (usize, &[Fraction])| flow.apply(arena, &field.show_all(vector));
         let rates: Vec<Vec<Expr>> = span.rows().map(along).collect();
         let known = span.rows().map(|(_, vector)| vector.to_vec()).collect();
         let next = spanned(known, &rates)?;
@@ -46,10 +42,7 @@ pub(in crate::search) fn observable(problem: &Problem<'_>, functions: &[Expr]) -
     if span.rank() == 0 || span.rank() == columns {
         return Ok(functions.to_vec());
     }
-    let combined = |(_, vector): (usize, &[Fraction])| {
-        let printed: Vec<Expr> = vector.iter().map(|c| field.show(c)).collect();
-        dot(arena, &printed, functions)
-    };
+    let combined = |(_, vector): (usize, &[Fraction])| arena.dot(&field.show_all(vector), functions);
     Ok(span.rows().map(combined).collect())
 }
 
@@ -61,11 +54,7 @@ fn rows(problem: &Problem<'_>, targets: &[Expr], functions: &[Expr]) -> Result<O
     let mut rows = Vec::new();
     for target in targets {
         let Some(row) = combine(&field, *target, &basis, &problem.hidden)? else { return Ok(None) };
-        rows.push(row[1..].iter().map(|c| field.show(c)).collect());
+        rows.push(field.show_all(&row[1..]));
     }
     Ok(Some(rows))
-}
-
-fn column(rows: &[Vec<Expr>], index: usize) -> Vec<Expr> {
-    rows.iter().map(|row| row[index]).collect()
 }

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use pebo_cas::forms::opaque::OpaqueTerms;
 use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
-use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Function, Node, Relation, Symbol};
 
 use crate::search::ansatz::Rate;
@@ -72,34 +72,15 @@ impl Connection {
         let roots: Vec<Expr> = conditions.iter().flatten().copied().collect();
         let field = Field::over(problem.arena, &problem.domain.facts, &roots)?;
         let matrix = equations(&field, conditions, moving)?;
-        let (slopes, rest) = Echelon::of(&field, matrix, states * outputs)?;
-        let behind = rest.into_iter().map(|row| row[states * outputs..].to_vec()).collect();
-        let (shifts, _) = Echelon::of(&field, behind, outputs)?;
-        let only_t = |entries: &[Fraction], pivot: Option<usize>| {
-            let alone = entries.iter().enumerate().all(|(column, e)| Some(column) == pivot || e.is_zero());
-            alone.then_some(())
-        };
-        let printed = |row: &[Fraction]| row.iter().map(|e| field.show(&e.opposite())).collect::<Vec<Expr>>();
-        let mut shift = vec![None; outputs];
-        for (pivot, row) in shifts.rows() {
-            let (left, right) = row.split_at(outputs);
-            shift[pivot] = only_t(left, Some(pivot)).map(|()| printed(right));
-        }
-        let mut gamma = vec![vec![None; outputs]; states];
-        for (pivot, row) in slopes.rows() {
-            let mut row = row.to_vec();
-            for (column, known) in shifts.rows() {
-                let offset = states * outputs + column;
-                let factor = row[offset].clone();
-                for (entry, known) in row[states * outputs..].iter_mut().zip(known) {
-                    *entry = field.sub(entry, &field.mul(&factor, known)?)?;
-                }
-            }
-            let (left, right) = row.split_at(states * outputs);
-            let (middle, right) = right.split_at(outputs);
-            if only_t(left, Some(pivot)).and(only_t(middle, None)).is_some() {
-                gamma[pivot / outputs][pivot % outputs] = Some(printed(right));
-            }
+        let slopes = states * outputs;
+        let echelon = Echelon::in_order(&field, matrix, (slopes, slopes + outputs))?;
+        let (mut shift, mut gamma) = (vec![None; outputs], vec![vec![None; outputs]; states]);
+        for (pivot, row) in echelon.determined() {
+            let entry = match pivot.checked_sub(slopes) {
+                Some(output) => &mut shift[output],
+                None => &mut gamma[pivot / outputs][pivot % outputs],
+            };
+            *entry = Some(row[slopes + outputs..].iter().map(|e| field.show(&e.opposite())).collect::<Vec<Expr>>());
         }
         Ok(Self { gamma, shift })
     }

@@ -18,8 +18,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::graph::enclosure::Point;
-use pebo_cas::linear::Echelon;
-use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::linear::{Echelon, Matrix};
+use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Function, Node, Symbol};
 
 use super::connection::MOST_DERIVATIVES;
@@ -95,10 +95,10 @@ impl RankDecision {
             }
             _ => None,
         };
-        let transposed = (0..functions).map(|column| lift.iter().map(|row| row[column].clone()).collect()).collect();
+        let transposed = Matrix::build(functions, lift.len(), |column, row| lift[row][column].clone());
         let (echelon, _) = Echelon::of(&field, transposed, states)?;
-        let printed = |row: &Vec<Fraction>| row.iter().map(|e| field.show(e)).collect();
-        Ok(Some(Self { relations: echelon.null_space().iter().map(printed).collect(), transforms }))
+        let relations = echelon.null_space().iter().map(|vector| field.show_all(vector)).collect();
+        Ok(Some(Self { relations, transforms }))
     }
 }
 

@@ -9,7 +9,6 @@
 use std::collections::BTreeSet;
 
 use crate::plant::Matrix;
-use crate::plant::matrix::dot;
 use pebo_cas::number::rational::half;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Function, Relation, Symbol};
@@ -58,7 +57,7 @@ impl<'a> Flat<'a> {
                     let Some(block) = &block else { continue };
                     let Some(factors) = self.varied(block, &remainders)? else { continue };
                     for (function, row) in functions.iter().zip(&block.values) {
-                        solution[*function] = dot(arena, row, &factors);
+                        solution[*function] = arena.dot(row, &factors);
                     }
                 }
                 kept.push(solution);
@@ -171,7 +170,7 @@ impl<'a> Flat<'a> {
                 let moved = if other == index {
                     Matrix::zero(arena, 2, 2)
                 } else {
-                    let slope = values.derivative(arena, *symbol).map(|e| arena.neg(e));
+                    let slope = values.derivative(arena, *symbol).map(|e| arena.neg(*e));
                     let moved = self.matrix(pair, other).mul(arena, &values).add(arena, &slope);
                     inverse.mul(arena, &moved).normal(arena, &problem.domain.facts)?
                 };
@@ -254,7 +253,7 @@ impl<'a> Flat<'a> {
             let mut slopes = Vec::new();
             for (index, symbol) in problem.y.iter().enumerate() {
                 let rest: Vec<Expr> = remainders.iter().map(|rest| rest[index]).collect();
-                slopes.push((*symbol, self.tidied(dot(problem.arena, row, &rest))?));
+                slopes.push((*symbol, self.tidied(problem.arena.dot(row, &rest))?));
             }
             let Some(factor) = potential(problem, &slopes) else { return Ok(None) };
             factors.push(factor);

@@ -98,7 +98,7 @@ impl GradientEquations {
     ) -> Result<Option<EquationRows>, Obstacle> {
         let (states, directions) = (problem.x.len(), self.base.len());
         let Some(all) = self.conditions.first().map(|row| row.len() / (directions + 1)) else { return Ok(None) };
-        let mut rows = equations(field, &self.conditions, &self.moving(problem))?;
+        let mut rows = equations(field, &self.conditions, &self.moving(problem))?.into_rows();
         // phi may be any function of an output in whose rate there is nothing hidden.
         let occurs = |function: &usize| {
             let columns = (0..directions).map(|by| function * directions + by).chain([all * directions + function]);

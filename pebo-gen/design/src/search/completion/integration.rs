@@ -8,7 +8,6 @@
 //! so that a solution is given by its values at a point. Out: transforms, for those solutions that have a closed form;
 //! nothing is proved of the domain.
 
-use crate::plant::matrix::dot;
 use pebo_cas::forms::tidy::shortest;
 use pebo_cas::tower::{Fraction, Obstacle};
 use pebo_cas::{Expr, Symbol};
@@ -46,7 +45,7 @@ pub(in crate::search) fn integrated(problem: &Problem<'_>) -> Result<Vec<Expr>, 
     let mut found = Vec::new();
     for solution in flat.solutions()? {
         let values: Vec<Expr> =
-            lift.iter().map(|row| shortest(arena, &problem.domain, dot(arena, row, &solution))).collect();
+            lift.iter().map(|row| shortest(arena, &problem.domain, arena.dot(row, &solution))).collect();
         let (gradient, frame) = values.split_at(values.len() - states);
         if frame.iter().all(|e| arena.is_zero(*e)) {
             continue;

@@ -18,7 +18,7 @@ mod gradient;
 pub(super) mod integration;
 
 use pebo_cas::Symbol;
-use pebo_cas::linear::Echelon;
+use pebo_cas::linear::{Echelon, Matrix};
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 
@@ -133,9 +133,9 @@ impl<'a> System<'a> {
     pub(super) fn completed(mut self) -> Result<Completion, Obstacle> {
         for _ in 0..MOST_ROUNDS {
             let width = self.functions * self.by.count();
-            let (slopes, rest) = Echelon::of(self.by.field, std::mem::take(&mut self.rows), width)?;
-            let rest = rest.into_iter().map(|row| row[width..].to_vec()).collect();
-            let values = Echelon::in_order(self.by.field, rest, (self.given, self.functions))?;
+            let rows = Matrix::new(std::mem::take(&mut self.rows));
+            let (slopes, rest) = Echelon::of(self.by.field, rows, width)?;
+            let values = Echelon::in_order(self.by.field, rest.behind(width), (self.given, self.functions))?;
             if values.rank() > 0 {
                 self.solve(&slopes, &values)?;
                 continue;
@@ -182,20 +182,20 @@ impl<'a> System<'a> {
             let mut next = Vec::new();
             for vector in &basis {
                 for direction in 0..directions {
-                    next.push(dot(field, along(direction), vector)?);
+                    next.push(field.dot(along(direction), vector)?);
                 }
             }
             for (vector, change) in basis.iter().zip(&changes) {
-                let mut sum = dot(field, values.iter(), vector)?;
+                let mut sum = field.dot(values, vector)?;
                 for (direction, change) in change.iter().enumerate() {
-                    sum = field.add(&sum, &dot(field, along(direction), change)?)?;
+                    sum = field.add(&sum, &field.dot(along(direction), change)?)?;
                 }
                 next.push(sum);
             }
             rows.push(next);
         }
         for row in &mut self.lift {
-            *row = basis.iter().map(|vector| dot(field, row.iter(), vector)).collect::<Result<_, _>>()?;
+            *row = basis.iter().map(|vector| field.dot(row.iter(), vector)).collect::<Result<_, _>>()?;
         }
         let is_given = |column: &usize| values.rows().any(|(pivot, _)| pivot == *column);
         self.given = (0..self.given).filter(|column| !is_given(column)).count();
@@ -208,8 +208,7 @@ impl<'a> System<'a> {
     fn mixed(&mut self, slopes: &Echelon) -> Result<Vec<EquationRow>, Obstacle> {
         let (field, directions, before) = (self.by.field, self.by.count(), self.functions);
         let width = before * directions;
-        let is_pivot = |column: &usize| slopes.rows().any(|(pivot, _)| pivot == *column);
-        let free: Vec<usize> = (0..width).filter(|column| !is_pivot(column)).collect();
+        let free: Vec<usize> = slopes.free().collect();
         let after = before + free.len();
         // Every first derivative of the functions before, in all functions.
         let mut given = vec![Vec::new(); width];
@@ -266,14 +265,4 @@ fn unit(length: usize, index: usize) -> EquationRow {
     let mut row = vec![Fraction::zero(); length];
     row[index] = Fraction::one();
     row
-}
-
-fn dot<'b>(
-    field: &Field<'_>,
-    left: impl Iterator<Item = &'b Fraction>,
-    right: &[Fraction],
-) -> Result<Fraction, Obstacle> {
-    left.zip(right)
-        .filter(|(a, b)| !a.is_zero() && !b.is_zero())
-        .try_fold(Fraction::zero(), |sum, (a, b)| field.add(&sum, &field.mul(a, b)?))
 }

@@ -4,7 +4,7 @@
 //! factors of the denominator, and arcs of those of degree two without real roots, if their undetermined coefficients
 //! exist (Hermite 1872; of factors of degree one and two that is every antiderivative).
 
-use pebo_cas::linear::solve;
+use pebo_cas::linear::{Matrix, solve};
 use pebo_cas::number::rational::half;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -101,7 +101,7 @@ impl Quotient<'_> {
                 rows[degree as usize][index] = field.of_polynomial(&coefficient)?;
             }
         }
-        let Some(coefficients) = solve(field, rows, columns.len())? else { return Ok(None) };
+        let Some(coefficients) = solve(field, Matrix::new(rows), columns.len())? else { return Ok(None) };
         let constant = field.of_polynomial(&constant)?;
         let mut terms = Vec::new();
         for ((function, _), coefficient) in columns.iter().zip(&coefficients) {

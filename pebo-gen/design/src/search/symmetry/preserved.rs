@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use pebo_cas::domain::zero::is_zero;
+use pebo_cas::linear::Matrix;
 use pebo_cas::linear::rank::null_vectors;
 use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
@@ -61,13 +62,9 @@ pub(super) fn free_of_signals(
     if slopes.iter().flatten().all(|slope| arena.is_zero(*slope)) {
         return Ok(rows);
     }
-    let columns = rows.first().map_or(0, Vec::len);
     let free = null_vectors(arena, &problem.domain.without_equations(), slopes, rows.len())?;
-    let combined = |factors: &Vec<Expr>| {
-        let column = |at: usize| rows.iter().map(|row| row[at]).collect::<Vec<Expr>>();
-        (0..columns).map(|at| arena.dot(factors, &column(at))).collect::<Vec<Expr>>()
-    };
-    Ok(free.iter().map(combined).collect())
+    let transposed = Matrix::new(rows).transpose();
+    Ok(free.iter().map(|factors| transposed.apply(arena, factors)).collect())
 }
 
 /// What no coefficient may depend on: the states, signals, outputs, inputs, and time.

@@ -5,8 +5,8 @@
 //! modulo W are a plant of their own, which makes the same outputs (the unobservable subspace of a linear plant, Wonham
 //! 1985, Section 3.2, with J for its matrix).
 
-use pebo_cas::linear::Echelon;
 use pebo_cas::linear::comparison::equations;
+use pebo_cas::linear::{Echelon, Matrix};
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
@@ -24,6 +24,7 @@ pub(super) fn direction(problem: &Problem<'_>, formulas: &Formulas) -> Result<Op
     let shown: Vec<Vec<Expr>> = formulas.shown.iter().map(row).collect();
     let jacobian: Vec<Vec<Expr>> = formulas.rates.iter().map(row).collect();
     let columns = states.len() + problem.plant.w.len();
+    let transposed = Matrix::build(columns, jacobian.len(), |at, row| jacobian[row][at]);
     let with_signals = shown.iter().chain(&jacobian).any(|row| row[states.len()..].iter().any(|s| !arena.is_zero(*s)));
     let moving = moving(problem);
     let mut rows = shown.clone();
@@ -54,11 +55,7 @@ pub(super) fn direction(problem: &Problem<'_>, formulas: &Formulas) -> Result<Op
         }
         dimension = subspace.len();
         // What vanishes on W: its rows, times the slopes of the rates, have to vanish on W too.
-        let carried = echelon.rows().map(|(_, normal)| {
-            let normal: Vec<Expr> = normal.iter().map(|entry| field.show(entry)).collect();
-            let column = |at: usize| jacobian.iter().map(|row| row[at]).collect::<Vec<Expr>>();
-            (0..columns).map(|at| arena.dot(&normal, &column(at))).collect::<Vec<Expr>>()
-        });
+        let carried = echelon.rows().map(|(_, normal)| transposed.apply(arena, &field.show_all(normal)));
         rows = shown.iter().cloned().chain(carried).collect();
     }
 }

@@ -15,6 +15,7 @@ mod fate;
 mod flows;
 
 use crate::plant::Plant;
+use pebo_cas::linear::Matrix;
 use pebo_cas::linear::determinant::by_elimination;
 use pebo_cas::tower::{Field, Fraction, Obstacle};
 use pebo_cas::{Domain, Expr};
@@ -32,10 +33,7 @@ pub(super) fn of(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Fundam
 
 fn judged(plant: &Plant, domain: &Domain, lambda: &[Vec<Expr>]) -> Result<Fundamental, Obstacle> {
     let field = Field::over(&plant.arena, &domain.facts, &lambda.concat())?;
-    let entries = lambda
-        .iter()
-        .map(|row| row.iter().map(|e| field.fraction(*e)).collect::<Result<Vec<_>, _>>())
-        .collect::<Result<Vec<_>, _>>()?;
+    let entries = field.matrix(lambda)?.into_rows();
     let system = System { plant, field, fed: fed(&entries), entries };
     let (mut rows, mut fades) = (vec![Fate::Open; lambda.len()], false);
     for block in system.blocks() {
@@ -171,20 +169,19 @@ impl System<'_> {
     fn characteristic(&self, block: &[usize]) -> Result<Vec<Fraction>, Obstacle> {
         let field = &self.field;
         let size = block.len();
-        let a: Vec<Vec<Fraction>> =
-            block.iter().map(|&i| block.iter().map(|&j| self.entries[i][j].clone()).collect()).collect();
+        let a = Matrix::build(size, size, |i, j| self.entries[block[i]][block[j]].clone());
         let mut polynomial = vec![Fraction::one()];
-        let mut m = vec![vec![Fraction::zero(); size]; size];
+        let mut m = Matrix::build(size, size, |_, _| Fraction::zero());
         for step in 1..=size {
             // M <- A M + c I
-            let mut next = product(field, &a, &m)?;
+            let mut next = a.product(field, &m)?.into_rows();
             for (i, row) in next.iter_mut().enumerate() {
                 row[i] = field.add(&row[i], &polynomial[step - 1])?;
             }
-            m = next;
-            let am = product(field, &a, &m)?;
+            m = Matrix::new(next);
+            let am = a.product(field, &m)?;
             let mut trace = Fraction::zero();
-            for (i, row) in am.iter().enumerate() {
+            for (i, row) in am.rows().iter().enumerate() {
                 trace = field.add(&trace, &row[i])?;
             }
             let count = field.fraction(self.plant.arena.number(-i64::try_from(step).unwrap_or(1)))?;
@@ -262,18 +259,5 @@ fn hurwitz(field: &Field<'_>, polynomial: &[Fraction], size: usize) -> Result<Fr
         let index = (2 * (column + 1)).checked_sub(row + 1);
         index.and_then(|index| polynomial.get(index)).cloned().unwrap_or_else(Fraction::zero)
     };
-    by_elimination(field, (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect())
-}
-
-fn product(field: &Field<'_>, a: &[Vec<Fraction>], b: &[Vec<Fraction>]) -> Result<Vec<Vec<Fraction>>, Obstacle> {
-    let size = a.len();
-    let mut total = vec![vec![Fraction::zero(); size]; size];
-    for (i, row) in total.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            for (k, factor) in a[i].iter().enumerate() {
-                *entry = field.add(entry, &field.mul(factor, &b[k][j])?)?;
-            }
-        }
-    }
-    Ok(total)
+    by_elimination(field, Matrix::build(size, size, entry))
 }

@@ -8,7 +8,7 @@ use crate::analysis::identifiability::flow::{Flow, only_signal, varies, without_
 use crate::analysis::identifiability::singular::{Volume, ZeroSet};
 use pebo_cas::linear::determinant::largest_minors;
 use pebo_cas::linear::rank::{full_rank_throughout, proved_rank};
-use pebo_cas::tower::{Field, Fraction, Obstacle};
+use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
 use super::family::Family;
@@ -94,9 +94,7 @@ impl ObservabilityProblem<'_> {
         let minors = || -> Result<Vec<Expr>, Obstacle> {
             let rows = independent(arena, domain, &observed.stack, self.unknowns());
             let field = Field::on(arena, domain, &rows.concat())?;
-            let fractions = |row: &Vec<Expr>| row.iter().map(|entry| field.fraction(*entry)).collect();
-            let rows = rows.iter().map(fractions).collect::<Result<Vec<Vec<Fraction>>, Obstacle>>()?;
-            let minors = largest_minors(&field, &rows)?;
+            let minors = largest_minors(&field, &field.matrix(&rows)?)?;
             minors.iter().map(|minor| Ok(field.show(&field.of_polynomial(minor)?))).collect()
         };
         let vanishes = |minor: Expr| self.on(domain).divides(zero, minor);

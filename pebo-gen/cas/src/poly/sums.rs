@@ -1,14 +1,68 @@
-//! Long division of sparse polynomials.
+//! Sums of products of coefficients, one for each monomial of a product or a remainder.
 //!
-//! The sums that the remainder consists of are in an array if the box of exponents is well filled, and else in a hash
-//! table. They are visited in descending order, so that a sum is complete when its turn comes; the division ends at the
-//! first that the divisor's leading term does not divide.
+//! In: pairs of coefficients, as words or integers of any size. Out: their sum, in the narrowest type that is known to
+//! hold it. The strategies of products and quotients (`boxed`, `hashed`, `packed`) differ in how they keep such sums;
+//! `multiply` and `divide` choose among them.
 
-use super::boxed::ExponentBox;
-use super::layout::{Exponents, Layout, MAX_WORDS};
-use super::multiply::{CoefficientSum, PackedFactor};
-use super::work::{TooLarge, Work, steps};
+use super::layout::{Exponents, Layout};
+use super::work::Work;
 use crate::Integer;
+
+/// A sum of products of coefficients.
+pub(super) trait CoefficientSum: Clone + Default {
+    /// The coefficients that are multiplied.
+    type Factor;
+    /// Adds `a * b`.
+    fn add_product(&mut self, a: &Self::Factor, b: &Self::Factor);
+    /// True if nothing remains.
+    fn vanishes(&self) -> bool;
+    /// The value.
+    fn into_integer(self) -> Integer;
+}
+
+/// Only if the sum is known to fit.
+impl CoefficientSum for i64 {
+    type Factor = i64;
+    #[inline]
+    fn add_product(&mut self, a: &i64, b: &i64) {
+        *self += a * b;
+    }
+    fn vanishes(&self) -> bool {
+        *self == 0
+    }
+    fn into_integer(self) -> Integer {
+        self.into()
+    }
+}
+
+/// Only if the sum is known to fit.
+impl CoefficientSum for i128 {
+    type Factor = i64;
+    #[inline]
+    fn add_product(&mut self, a: &i64, b: &i64) {
+        *self += i128::from(*a) * i128::from(*b);
+    }
+    fn vanishes(&self) -> bool {
+        *self == 0
+    }
+    fn into_integer(self) -> Integer {
+        self.into()
+    }
+}
+
+impl CoefficientSum for Integer {
+    type Factor = Integer;
+    #[inline]
+    fn add_product(&mut self, a: &Integer, b: &Integer) {
+        Integer::add_product(self, a, b);
+    }
+    fn vanishes(&self) -> bool {
+        self.is_zero()
+    }
+    fn into_integer(self) -> Integer {
+        self
+    }
+}
 
 /// The outcome of a division.
 pub(super) enum Outcome<C> {
@@ -63,6 +117,15 @@ impl RemainderSum for Integer {
     }
 }
 
+/// Keys and coefficients of a factor, in the layout of the product.
+pub(super) struct PackedFactor<'a, C> {
+    pub(super) keys: &'a [u64],
+    pub(super) coefficients: &'a [C],
+}
+
+/// Descending keys, and their coefficients.
+pub(super) type PackedTerms = (Vec<u64>, Vec<Integer>);
+
 /// The keys of a division, all in one layout.
 pub(super) struct Division<'a> {
     pub(super) layout: &'a Layout,
@@ -73,30 +136,4 @@ pub(super) struct Division<'a> {
     /// Steps for each product.
     pub(super) weight: u64,
     pub(super) work: &'a Work,
-}
-
-impl Division<'_> {
-    pub(super) fn run<S: RemainderSum>(
-        &self,
-        dividend: &[Integer],
-        divisor: &[S::Factor],
-    ) -> Result<Outcome<S::Factor>, TooLarge> {
-        let cost = self.weight.saturating_mul(steps(divisor.len()));
-        // A cell costs about a nanosecond, an access to the table ten.
-        let degrees = self.layout.degrees(self.dividend);
-        if let Some(cells) = ExponentBox::new(self.layout, &degrees, 8 * dividend.len()) {
-            let dividend = PackedFactor { keys: self.dividend, coefficients: dividend };
-            let divisor = PackedFactor { keys: self.divisor, coefficients: divisor };
-            return cells.quotient::<S, _>(&dividend, &divisor, self.degrees, || self.work.spend(cost));
-        }
-        match self.layout.words() {
-            1 => self.in_table::<1, S>(dividend, divisor),
-            2 => self.in_table::<2, S>(dividend, divisor),
-            4 => self.in_table::<4, S>(dividend, divisor),
-            8 => self.in_table::<8, S>(dividend, divisor),
-            16 => self.in_table::<16, S>(dividend, divisor),
-            MAX_WORDS => self.in_table::<MAX_WORDS, S>(dividend, divisor),
-            _ => Err(TooLarge),
-        }
-    }
 }
