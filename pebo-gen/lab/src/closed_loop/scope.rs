@@ -11,7 +11,7 @@ use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
-use super::layout::{baseline_state, last_sample, time};
+use crate::experiment::layout::{baseline_state, last_sample, time};
 use crate::observe::request::Request;
 
 /// Estimates by the state's name.
