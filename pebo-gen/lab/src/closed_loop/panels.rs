@@ -8,33 +8,28 @@ use pebo_design::plant::lower;
 use pebo_design::source::Diagnostics;
 
 use super::scope::{Estimates, Names, Sight, View};
-use crate::experiment::layout::{ComparedBaseline, Layout};
-use crate::experiment::panels::{CurveValue, PanelBuilder, Panels};
+use crate::experiment::panels::{CurveValue, PanelBuilder};
 use crate::figure::label::Label;
 use crate::figure::panel::PanelCurve;
 use crate::figure::unit;
 
-/// The panels of the model file, else the usual ones; `errors` are those of the observer's estimates.
-pub(crate) fn panels(
+/// Adds the panels of the model file, else the usual ones; `errors` are those of the observer's estimates.
+pub(crate) fn add_panels(
+    builder: &mut PanelBuilder<'_>,
     names: &Names,
     (hats, errors): (&Estimates, &[Expr]),
-    (layout, baselines): (&Layout, &[ComparedBaseline]),
     problems: &mut Diagnostics,
-) -> Panels {
-    let plant = names.plant;
-    let mut builder = PanelBuilder { plant, layout, baselines, found: Panels::default() };
+) {
     if !names.simulation.panels.is_empty() {
-        written(&mut builder, names, (hats, errors), problems);
-        return builder.found;
+        return written(builder, names, (hats, errors), problems);
     }
     // Without noise errors are on a logarithmic axis, which alone shows how they die out.
     let scale = if names.simulation.noise.is_empty() { Scale::Log } else { Scale::Linear };
     let curve = |((state, _), error): (&(String, Expr), &Expr)| {
         let curve = PanelCurve::settling(Label::error(state), false);
-        (plant.arena.symbol(state), curve, CurveValue::plain(*error))
+        (names.plant.arena.symbol(state), curve, CurveValue::plain(*error))
     };
     builder.usual(Label::name, (scale, hats.iter().zip(errors).map(curve).collect()), Vec::new());
-    builder.found
 }
 
 /// The panels of the file; estimate less truth is the error, for an angle the shorter way round.

@@ -18,18 +18,16 @@ use super::baseline::ResolvedBaseline;
 use super::estimator::{estimator_text, overridden};
 use super::failure::{Failure, refused};
 use super::ode::switching::{SwitchPrograms, Switches};
-use super::panels::panels;
-use super::scope::{Estimates, Names, Sight, View};
+use super::panels::add_panels;
+use super::scope::{Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
 use super::truth::Truth;
 use super::{control, ode};
-use crate::experiment::columns::Columns;
-use crate::experiment::estimates::scored;
 use crate::experiment::layout::{
-    ComparedBaseline, Layout, SourceSymbols, baseline_estimates, baseline_state, course, estimate, last_sample,
+    Layout, SourceSymbols, baseline_estimates, baseline_state, course, estimates, last_sample,
 };
-use crate::experiment::setup::{Experiment, Parts};
+use crate::experiment::setup::Experiment;
 use crate::observe::design::Design;
 use crate::overrides::Overrides;
 use crate::summary::advice::{Origin, advise};
@@ -133,7 +131,7 @@ impl Scenario {
         };
         let help = match failure {
             Failure::Refused { at, fault: Fault::Estimate, .. } if *at <= 0.0 => self.restart.clone(),
-            Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
+            Failure::NotFinite { name, .. } if self.experiment.design.names.inputs.contains(name) => {
                 format!(
                     "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
                 )
@@ -147,11 +145,6 @@ impl Scenario {
             _ => failure.to_string(),
         };
         Diagnostic::error(code, self.experiment.span, message).help(help)
-    }
-
-    /// The names of the inputs.
-    fn inputs(&self) -> impl Iterator<Item = &String> {
-        self.names[self.experiment.layout.u.clone()].iter()
     }
 }
 
@@ -207,15 +200,10 @@ impl Resolution<'_> {
         // After the start, of which it takes its numbers where none are written.
         let shown = Shown::of_period(overrides.step);
         let design = Design::resolve(&names.request(), derivation, &numbers, &shown, problems);
-        let (timing, mut design, mut rates) = (timing?, design?, rates?);
+        let (timing, design, mut rates) = (timing?, design?, rates?);
         problems.keep(admit_delays(names.model, &timing))?;
 
-        let hats: Estimates = design
-            .recovered
-            .iter()
-            .map(|s| arena.name(*s))
-            .map(|s| (s.clone(), arena.of_symbol(estimate(arena, &s))))
-            .collect();
+        let hats = estimates(arena, &design);
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
 
@@ -223,12 +211,9 @@ impl Resolution<'_> {
             let states = baseline_estimates(plant, entry).into_iter().map(|(state, _)| state);
             (entry.name.value.clone(), states.collect())
         };
-        let compared: Vec<ComparedBaseline> = simulation.baselines.iter().map(compared).collect();
+        let compared: Vec<_> = simulation.baselines.iter().map(compared).collect();
         let layout = Layout::new(plant, &design, &compared, symbols(&names));
-        let scored = scored(plant, derivation, &numbers, &layout);
-        let panels = panels(&names, (&hats, &scored.1[..hats.len()]), (&layout, &compared), problems);
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
-        let state = &layout.symbols[layout.state.clone()];
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > ode::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
@@ -237,20 +222,27 @@ impl Resolution<'_> {
                     .help(format!("the simulator has room for {}", ode::LARGEST)),
             );
         }
-        let shown = layout.x.clone().zip(layout.x.clone()).chain(layout.y.clone().zip(layout.measured()));
-        let commanded = layout.u.clone().zip(layout.u.clone()).take(plant.commanded().count());
-        let columns = Columns::new(arena, &layout, shown.chain(commanded));
-        problems.keep(admit_table(&timing, columns.names.len()));
-        let estimates: Vec<Expr> =
+        let of_baselines: Vec<Expr> =
             baselines.iter().flat_map(|baseline| baseline.estimates.iter().map(|e| e.1)).collect();
         let outputs = plant.y.iter().map(|output| output.symbol);
         let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs).collect();
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
+        let named = baselines.into_iter().filter_map(|baseline| Some((baseline.name, baseline.sampled?)));
+        let mut experiment = Experiment::resolve(
+            (plant, derivation, &numbers),
+            (design, layout),
+            (true, named.collect()),
+            |builder, (_, errors), problems| add_panels(builder, &names, (&hats, &errors[..hats.len()]), problems),
+            (span, &mut *problems),
+        )?;
+        problems.keep(admit_table(&timing, experiment.columns.names.len()));
+        let layout = &experiment.layout;
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         let control = compile(&control)?;
         if let Some(share) = overrides.initial_error {
-            begin(&names, (&layout, &signals, &control), &start, share, &mut design.settings.chi_0);
+            let chi_0 = &mut experiment.design.settings.chi_0;
+            begin(&names, (layout, &signals, &control), &start, share, chi_0);
         }
         Some(Scenario {
             estimator: estimator_text(&names.model.observer),
@@ -262,28 +254,15 @@ impl Resolution<'_> {
             moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
-            slopes: compile(&slopes(arena, &rates, state))?,
+            slopes: compile(&slopes(arena, &rates, &layout.symbols[layout.state.clone()]))?,
             switches: switches?,
-            baseline_estimates: compile(&estimates)?,
+            baseline_estimates: compile(&of_baselines)?,
             control,
-            names: layout.names(arena, &(0..layout.symbols.len())),
+            names: layout.symbols.iter().map(|symbol| arena.name(*symbol)).collect(),
             timing,
             signals,
             restart: restart(&names, derivation),
-            experiment: Parts {
-                plant,
-                derivation,
-                numbers: &numbers,
-                baselines: baselines.into_iter().filter_map(|by| Some((by.name, by.sampled?))).collect(),
-                design,
-                layout,
-                has_truth: true,
-                scored,
-                panels,
-                columns,
-                span,
-            }
-            .compile(problems)?,
+            experiment,
         })
     }
 }

@@ -38,11 +38,13 @@ pub(crate) struct SimulatedPlant<'a> {
     given: Formulas,
     baselines: Formulas,
     control: Formulas,
-    /// The present sample; none before the first.
+    /// The number of the present sample; none before the first.
     sample: Option<u64>,
-    /// The next row of the table, and true if the present sample is one.
     next_row: u64,
-    is_row: bool,
+    next_report: u64,
+    /// True if the present sample is a row of the table.
+    pub(crate) is_row: bool,
+    /// The states at the first sample.
     x: Vec<f64>,
     inputs: Vec<f64>,
     /// The outputs for baselines, and for the model's observer.
@@ -77,8 +79,9 @@ impl<'a> SimulatedPlant<'a> {
             control: Formulas::new(&scenario.control),
             sample: None,
             next_row: 0,
+            next_report: 0,
             is_row: false,
-            x: vec![0.0; layout.x.len()],
+            x: Vec::new(),
             inputs: vec![0.0; layout.u.len()],
             outputs: vec![0.0; layout.y.len()],
             own: vec![0.0; layout.y.len()],
@@ -89,11 +92,6 @@ impl<'a> SimulatedPlant<'a> {
     /// The number of the present sample.
     pub(crate) fn sample(&self) -> u64 {
         self.sample.unwrap_or_default()
-    }
-
-    /// True if the present sample is a row of the table.
-    pub(crate) fn is_row(&self) -> bool {
-        self.is_row
     }
 
     /// Begins at the first sample.
@@ -115,6 +113,7 @@ impl<'a> SimulatedPlant<'a> {
         }
         self.admit(table, layout.state.clone())?;
         self.growth = Growth::new(&table[layout.state.clone()]);
+        self.x.extend(&table[layout.x.clone()]);
         Ok(())
     }
 
@@ -207,7 +206,6 @@ impl Source for SimulatedPlant<'_> {
         self.is_row = sample == timing.sample_of_row(self.next_row);
         self.next_row += u64::from(self.is_row);
         let Self { layout, x, inputs, outputs, own, .. } = self;
-        x.copy_from_slice(&table[layout.x.clone()]);
         inputs.copy_from_slice(&table[layout.u.clone()]);
         outputs.copy_from_slice(&table[layout.measured()]);
         // The sensor of an angle reads it within a turn.
@@ -222,7 +220,7 @@ impl Source for SimulatedPlant<'_> {
             elapsed: table[TIME],
             // The observer's first call gives its step no effect.
             dt: timing.step,
-            truth: Some(x),
+            truth: (sample == 0).then_some(x),
             own: if arrives { Arrival::Whole(own) } else { Arrival::Lost },
             outputs: Some(outputs.as_slice()).filter(|_| arrives),
             inputs,
@@ -242,14 +240,14 @@ impl Source for SimulatedPlant<'_> {
         let estimates = self.baselines.of(table);
         table[layout.baseline_estimates.clone()].copy_from_slice(estimates);
         if let Some(Err(fault)) = taken.filter(|_| observer.has_given_up()) {
-            let samples = observer.refused();
+            let samples = observer.refused;
             let first = sample.saturating_sub(samples.saturating_sub(1));
             return Err(Failure::Refused { at: timing.at(first), samples, fault });
         }
         self.set_inputs(table);
         self.admit(table, layout.u.clone())?;
-        let stride = (timing.samples / REPORTS).max(1);
-        let is_report = sample.is_multiple_of(stride);
+        let is_report = sample == self.next_report;
+        self.next_report += if is_report { (timing.samples / REPORTS).max(1) } else { 0 };
         if is_report && (self.progress)(real(sample) / real(timing.samples)).is_break() {
             return Err(Failure::Stopped { at: table[TIME] });
         }

@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use pebo_cas::Arena;
+use pebo_design::plant::Plant;
 
 use super::layout::{Layout, PlacedEstimate, TIME};
 
@@ -23,10 +23,13 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// The columns with these signals: the positions of their symbols and of their values.
-    pub(crate) fn new(arena: &Arena, layout: &Layout, signals: impl Iterator<Item = (usize, usize)>) -> Self {
+    /// The columns, with states, outputs and inputs if these are not recorded elsewhere.
+    pub(crate) fn new(plant: &Plant, layout: &Layout, has_signals: bool) -> Self {
         let mut columns = vec![("t".to_owned(), TIME)];
-        columns.extend(signals.map(|(symbol, place)| (arena.name(layout.symbols[symbol]), place)));
+        let signals = plant.x.iter().map(|state| state.symbol).chain(plant.y.iter().map(|output| output.symbol));
+        let places = layout.x.clone().chain(layout.measured()).chain(layout.u.clone());
+        let signals = signals.chain(plant.commanded()).zip(places).filter(|_| has_signals);
+        columns.extend(signals.map(|(signal, place)| (plant.arena.name(signal), place)));
         for PlacedEstimate { estimate, hat, error, .. } in &layout.estimates {
             columns.push((format!("{}_hat", estimate.name()), *hat));
             if let Some(error) = error.filter(|_| estimate.baseline.is_none()) {

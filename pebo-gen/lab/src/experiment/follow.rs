@@ -35,9 +35,9 @@ pub(crate) struct ExperimentState<'a> {
     certainty: CertaintyMonitor<'a>,
     expected: ExpectedErrors,
     assumed: DomainMonitor<'a>,
-    /// The samples, and those of which there are estimates, with the time of the last of these.
     samples: u64,
-    estimated: u64,
+    /// The samples of which there are estimates, with the time of the last of them.
+    pub(crate) estimated: u64,
     last: f64,
 }
 
@@ -163,9 +163,9 @@ impl<'a> ExperimentState<'a> {
         self.expected.add(self.last, predicted);
     }
 
-    /// The summary after the last sample, if there was an estimate; `contradiction` is how many times as large as expected
-    /// innovations are, if that contradicts the observer's numbers.
-    pub(crate) fn summary(&self, contradiction: Option<f64>) -> Option<Summary> {
+    /// The summary after the last sample; `contradiction` is how many times as large as expected innovations are, if that
+    /// contradicts the observer's numbers.
+    pub(crate) fn summary(&self, contradiction: Option<f64>) -> Summary {
         let Experiment { design, scored, .. } = self.experiment;
         let rated = scored.iter().zip(&self.scores).zip(&self.outside).map(|((scored, score), outside)| {
             let score = score.finish();
@@ -178,22 +178,22 @@ impl<'a> ExperimentState<'a> {
                 outside: *outside,
             }
         });
-        (self.estimated > 0).then(|| Summary {
+        Summary {
             end: self.last,
-            samples: self.samples - 1,
+            samples: self.samples.saturating_sub(1),
             estimates: rated.collect(),
             excitation: self.excitation.excitation(&design.unknown_names),
-            faults: self.driver.faults().clone(),
-            dropped: self.driver.dropped(),
-            parted: self.driver.parted(),
-            stateless: self.driver.stateless(),
-            restarts: self.driver.restarts(),
+            faults: self.driver.faults.clone(),
+            dropped: self.driver.dropped,
+            parted: self.driver.parted,
+            stateless: self.driver.stateless,
+            restarts: self.driver.observer.restarts(),
             outside: self.assumed.outside(),
             surprise: self.driver.surprise(),
             typical: self.driver.typical(),
             contradiction,
             certainty: self.certainty.certainty(),
             known: design.settings.known.clone(),
-        })
+        }
     }
 }

@@ -48,6 +48,8 @@ pub(crate) struct Layout {
     pub(crate) errors: Range<usize>,
     /// The observer's estimates, then those of each baseline.
     pub(crate) estimates: Vec<PlacedEstimate>,
+    /// The baselines, with the positions of their estimates.
+    pub(crate) baselines: Vec<(String, Range<usize>)>,
 }
 
 /// An estimate with its positions in the table.
@@ -59,9 +61,6 @@ pub(crate) struct PlacedEstimate {
     pub(crate) truth: Option<usize>,
     pub(crate) error: Option<usize>,
 }
-
-/// The names of a baseline and of the states that it estimates.
-pub(crate) type ComparedBaseline = (String, Vec<String>);
 
 /// The symbols of a source beside outputs, inputs and estimates.
 #[derive(Debug, Default)]
@@ -77,7 +76,12 @@ pub(crate) struct SourceSymbols {
 
 impl Layout {
     /// The table for this plant and source, with the states that this observer recovers and these baselines estimate.
-    pub(crate) fn new(plant: &Plant, design: &Design, baselines: &[ComparedBaseline], source: SourceSymbols) -> Self {
+    pub(crate) fn new(
+        plant: &Plant,
+        design: &Design,
+        baselines: &[(String, Vec<String>)],
+        source: SourceSymbols,
+    ) -> Self {
         let arena = &plant.arena;
         let mut symbols = vec![time(arena)];
         let mut add = |group: Vec<Symbol>| {
@@ -100,15 +104,21 @@ impl Layout {
         let [signals, last_samples, residuals] = [source.signals, source.last_samples, source.residuals].map(add);
         let of_observer = recovered.iter().map(|state| (None, state));
         let all = of_observer.chain(of_baselines.iter().map(|(name, state)| (Some((*name).clone()), *state)));
-        let (first_error, mut estimates) = (symbols.len(), Vec::new());
+        let (first_error, mut placed) = (symbols.len(), Vec::new());
         for ((baseline, state), hat) in all.zip(hat.clone().chain(baseline_estimates.clone())) {
             let truth = symbols[..first_error].iter().position(|known| *known == arena.symbol(state));
             let error = truth.map(|_| symbols.len());
             let unit = plant.units.get(&arena.symbol(state)).cloned();
             let estimate = Estimate { baseline, state: state.clone(), unit };
             symbols.extend(error.map(|_| arena.generated(&format!("error({})", estimate.name()))));
-            estimates.push(PlacedEstimate { estimate, hat, truth, error });
+            placed.push(PlacedEstimate { estimate, hat, truth, error });
         }
+        let mut end = baseline_estimates.start;
+        let place = |(name, states): &(String, Vec<String>)| {
+            let start = end;
+            end += states.len();
+            (name.clone(), start..end)
+        };
         let measured_time = plant.time.map(|_| u.end - 1);
         let errors = first_error..symbols.len();
         Self {
@@ -125,7 +135,8 @@ impl Layout {
             last_samples,
             residuals,
             errors,
-            estimates,
+            estimates: placed,
+            baselines: baselines.iter().map(place).collect(),
         }
     }
 
@@ -134,22 +145,15 @@ impl Layout {
         if self.last_samples.is_empty() { self.y.clone() } else { self.last_samples.clone() }
     }
 
-    /// The estimates of a baseline.
+    /// The positions of a baseline's estimates.
     pub(crate) fn of_baseline(&self, name: &str) -> Range<usize> {
-        let is_own = |placed: &PlacedEstimate| placed.estimate.baseline.as_deref() == Some(name);
-        let count = self.estimates.iter().filter(|placed| is_own(placed)).count();
-        let first = self.estimates.iter().find(|placed| is_own(placed)).map_or(0, |placed| placed.hat);
-        first..first + count
+        let found = self.baselines.iter().find(|(known, _)| known == name);
+        found.map(|(_, places)| places.clone()).unwrap_or_default()
     }
 
     /// A program from the table to the values of these expressions; `span` is where they are from.
     pub(crate) fn program(&self, arena: &Arena, outputs: &[Expr], span: Span) -> Result<Program, Diagnostic> {
         program(arena, &self.symbols, outputs, span)
-    }
-
-    /// The names of the values at these positions.
-    pub(crate) fn names(&self, arena: &Arena, range: &Range<usize>) -> Vec<String> {
-        self.symbols[range.clone()].iter().map(|symbol| arena.name(*symbol)).collect()
     }
 }
 
@@ -171,6 +175,12 @@ pub(crate) fn last_sample(arena: &Arena, output: &str) -> Symbol {
 /// The observer's estimate of a state.
 pub(crate) fn estimate(arena: &Arena, state: &str) -> Symbol {
     arena.generated(&format!("hat({state})"))
+}
+
+/// The observer's estimates, by the state's name.
+pub(crate) fn estimates(arena: &Arena, design: &Design) -> Vec<(String, Expr)> {
+    let recovered = design.recovered.iter().map(|state| arena.name(*state));
+    recovered.map(|state| (state.clone(), arena.of_symbol(estimate(arena, &state)))).collect()
 }
 
 /// The standard error of that estimate.

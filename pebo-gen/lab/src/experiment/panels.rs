@@ -5,22 +5,16 @@
 //! A curve that shows estimates of the observer is drawn once more for each baseline that estimates the same states, with
 //! the baseline's name beside it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::ops::Range;
 
 use pebo_cas::{Expr, Symbol};
 use pebo_design::model::Scale;
 use pebo_design::plant::Plant;
 
-use super::layout::{ComparedBaseline, Layout, baseline_estimate, estimate, standard_error};
+use super::layout::{Layout, estimate, standard_error};
 use crate::figure::label::Label;
 use crate::figure::panel::{Panel, PanelCurve};
-
-/// The panels, and the values of their curves one after the other, each with the edges of its band.
-#[derive(Debug, Default)]
-pub(crate) struct Panels {
-    pub(crate) panels: Vec<Panel>,
-    pub(crate) values: Vec<Expr>,
-}
 
 /// The value of a curve, and the edges of the band about it.
 #[derive(Clone, Copy, Debug)]
@@ -39,15 +33,23 @@ impl CurveValue {
 /// The curve of a signal.
 pub(crate) type SignalCurve = (Symbol, PanelCurve, CurveValue);
 
-/// Builds the panels.
+/// The panels so far, and the values of their curves one after the other, each with the edges of its band.
 pub(crate) struct PanelBuilder<'a> {
-    pub(crate) plant: &'a Plant,
+    plant: &'a Plant,
     pub(crate) layout: &'a Layout,
-    pub(crate) baselines: &'a [ComparedBaseline],
-    pub(crate) found: Panels,
+    panels: Vec<Panel>,
+    values: Vec<Expr>,
 }
 
-impl PanelBuilder<'_> {
+impl<'a> PanelBuilder<'a> {
+    pub(crate) fn new(plant: &'a Plant, layout: &'a Layout) -> Self {
+        Self { plant, layout, panels: Vec::new(), values: Vec::new() }
+    }
+
+    pub(crate) fn finish(self) -> (Vec<Panel>, Vec<Expr>) {
+        (self.panels, self.values)
+    }
+
     /// Each estimate beside the state with its label; errors on an axis of this scale; residuals; outputs and inputs, each
     /// unit on an axis of its own.
     pub(crate) fn usual(
@@ -104,27 +106,28 @@ impl PanelBuilder<'_> {
         let mut shown = Vec::new();
         for (curve, CurveValue { value, edges }) in curves {
             shown.push(curve.clone());
-            self.found.values.push(value);
-            self.found.values.extend(edges.into_iter().flatten());
-            for baseline in self.baselines {
-                if let Some(other) = self.through(value, baseline) {
-                    let label = curve.label.clone().remark(&baseline.0);
+            self.values.push(value);
+            self.values.extend(edges.into_iter().flatten());
+            for (baseline, places) in &self.layout.baselines {
+                if let Some(other) = self.through(value, places) {
+                    let label = curve.label.clone().remark(baseline);
                     shown.push(PanelCurve { label, has_band: false, ..curve });
-                    self.found.values.push(other);
+                    self.values.push(other);
                 }
             }
         }
-        self.found.panels.push(Panel { title: title.to_owned(), unit, scale, curves: shown });
+        self.panels.push(Panel { title: title.to_owned(), unit, scale, curves: shown });
     }
 
-    /// The value with a baseline's estimates in place of the observer's, if there are any in it and it has them all.
-    fn through(&self, value: Expr, (name, states): &ComparedBaseline) -> Option<Expr> {
-        let arena = &self.plant.arena;
-        let symbols: BTreeSet<Symbol> = self.layout.symbols[self.layout.hat.clone()].iter().copied().collect();
-        let own: BTreeMap<Symbol, Expr> = (states.iter())
-            .map(|state| (estimate(arena, state), arena.of_symbol(baseline_estimate(arena, name, state))))
+    /// The value with the estimates of a baseline at these places, if the observer's are in it and it has them all.
+    fn through(&self, value: Expr, baseline: &Range<usize>) -> Option<Expr> {
+        let (arena, Layout { symbols, hat, estimates, .. }) = (&self.plant.arena, self.layout);
+        let hats: BTreeSet<Symbol> = symbols[hat.clone()].iter().copied().collect();
+        let of_baseline = estimates.iter().filter(|placed| baseline.contains(&placed.hat));
+        let others = of_baseline
+            .map(|placed| (estimate(arena, &placed.estimate.state), arena.of_symbol(symbols[placed.hat])))
             .collect();
-        let replaced = arena.substitute(value, &own);
-        (arena.depends_on(value, &symbols) && !arena.depends_on(replaced, &symbols)).then_some(replaced)
+        let replaced = arena.substitute(value, &others);
+        (arena.depends_on(value, &hats) && !arena.depends_on(replaced, &hats)).then_some(replaced)
     }
 }

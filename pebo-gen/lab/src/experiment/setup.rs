@@ -12,9 +12,9 @@ use pebo_design::program::Program;
 use pebo_design::source::{Diagnostics, Span};
 
 use super::columns::Columns;
-use super::estimates::ScoredEstimate;
+use super::estimates::{ScoredEstimate, scored};
 use super::layout::Layout;
-use super::panels::Panels;
+use super::panels::PanelBuilder;
 use crate::closed_loop::baseline::NamedBaseline;
 use crate::figure::panel::Panel;
 use crate::observe::design::Design;
@@ -40,45 +40,38 @@ pub(crate) struct Experiment {
     /// The values of the panels' curves.
     pub(crate) curves: Program,
     pub(crate) columns: Columns,
-    pub(crate) span: Span,
-}
-
-/// The parts of an experiment before they are programs.
-pub(crate) struct Parts<'a> {
-    pub(crate) plant: &'a Plant,
-    pub(crate) derivation: &'a Derivation,
-    /// The values of the parameters.
-    pub(crate) numbers: &'a BTreeMap<Symbol, Expr>,
-    pub(crate) design: Design,
-    pub(crate) layout: Layout,
-    pub(crate) has_truth: bool,
-    pub(crate) baselines: Vec<(String, NamedBaseline)>,
-    pub(crate) scored: (Vec<ScoredEstimate>, Vec<Expr>),
-    pub(crate) panels: Panels,
-    pub(crate) columns: Columns,
     /// The section that describes it.
     pub(crate) span: Span,
 }
 
-impl Parts<'_> {
-    /// The experiment; formulas that need a symbol without a value are reported.
-    pub(crate) fn compile(self, problems: &mut Diagnostics) -> Option<Experiment> {
-        let Self { plant, derivation, numbers, layout, span, scored: (scored, errors), panels, .. } = self;
-        let arena = &plant.arena;
-        let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
-        Some(Experiment {
+impl Experiment {
+    /// The experiment of a derivation with these values of parameters; `panels` adds those of the figure, by the formulas of
+    /// errors. A symbol without a value is reported.
+    pub(crate) fn resolve(
+        (plant, derivation, numbers): (&Plant, &Derivation, &BTreeMap<Symbol, Expr>),
+        (design, layout): (Design, Layout),
+        (has_truth, baselines): (bool, Vec<(String, NamedBaseline)>),
+        panels: impl FnOnce(&mut PanelBuilder<'_>, (&[ScoredEstimate], &[Expr]), &mut Diagnostics),
+        (span, problems): (Span, &mut Diagnostics),
+    ) -> Option<Self> {
+        let (scored, errors) = scored(plant, derivation, numbers, &layout);
+        let mut builder = PanelBuilder::new(plant, &layout);
+        panels(&mut builder, (&scored, &errors), problems);
+        let (panels, curves) = builder.finish();
+        let mut compile = |values: &[Expr]| problems.keep(layout.program(&plant.arena, values, span));
+        Some(Self {
             title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
-            design: self.design,
-            has_truth: self.has_truth,
-            followers: self.baselines.into_iter().map(|(name, by)| (layout.of_baseline(&name), by)).collect(),
+            design,
+            has_truth,
+            followers: baselines.into_iter().map(|(name, by)| (layout.of_baseline(&name), by)).collect(),
             scored,
             errors: compile(&errors)?,
-            curves: compile(&panels.values)?,
-            panels: panels.panels,
+            curves: compile(&curves)?,
+            panels,
             assumed: AssumedDomain::of(plant, &derivation.conditions, &layout.symbols, |assumed| {
-                compile(&arena.substitute_all(assumed, numbers))
+                compile(&plant.arena.substitute_all(assumed, numbers))
             })?,
-            columns: self.columns,
+            columns: Columns::new(plant, &layout, has_truth),
             layout,
             span,
         })

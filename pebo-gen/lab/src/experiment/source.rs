@@ -30,7 +30,7 @@ pub(crate) struct Sample<'a> {
     pub(crate) elapsed: f64,
     /// The time since the one before, as observers know it.
     pub(crate) dt: f64,
-    /// The states x, where they are known for sure.
+    /// The states x at the first sample, where they are known for sure.
     pub(crate) truth: Option<&'a [f64]>,
     /// The outputs for the model's observer.
     pub(crate) own: Arrival<'a>,

@@ -41,8 +41,9 @@ pub(super) struct Piece<'a, 'r, 's> {
     line: u64,
     residuals: ResidualState<'a>,
     misfits: Vec<Scorer>,
-    /// Its rows, and those of which the observer took the sample.
-    rows: u64,
+    /// Its rows.
+    pub(super) rows: u64,
+    /// Those of which the observer took the sample.
     samples: u64,
     /// The first instant, and that of the last row.
     first: Option<f64>,
@@ -79,11 +80,6 @@ impl<'a, 'r, 's> Piece<'a, 'r, 's> {
         }
     }
 
-    /// Its rows.
-    pub(super) fn rows(&self) -> u64 {
-        self.rows
-    }
-
     /// The first instant.
     pub(super) fn start(&self) -> f64 {
         self.first.unwrap_or_default()
@@ -102,9 +98,9 @@ impl<'a, 'r, 's> Piece<'a, 'r, 's> {
 
     /// The residuals of the outputs.
     pub(super) fn residuals(&self) -> Vec<OutputResidual> {
-        let Replay { names, residuals, .. } = self.replay;
+        let Replay { experiment, names, residuals, .. } = self.replay;
         let misfit = |((output, _), score): (&(usize, bool), &Scorer)| OutputResidual {
-            output: names.y[*output].clone(),
+            output: experiment.design.names.outputs[*output].clone(),
             unit: names.units[*output].clone(),
             score: score.finish(),
         };
@@ -158,7 +154,7 @@ impl Source for Piece<'_, '_, '_> {
     fn next(&mut self, table: &mut [f64]) -> Result<Option<Sample<'_>>, Failure> {
         let coming = self.stream.next()?;
         self.goes_on = matches!(coming, Coming::Piece);
-        let Coming::Row(Row { line, t, dt, signals }) = coming else { return Ok(None) };
+        let Coming::Row(Row { line, signals, .. }, t, dt) = coming else { return Ok(None) };
         let has_begun = self.samples > 0;
         let Layout { x, y, u, measured_time, .. } = self.layout;
         self.first.get_or_insert(t);

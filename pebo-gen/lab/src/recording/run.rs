@@ -67,18 +67,19 @@ impl Replay {
             })?;
             let contradiction = contradiction(&state.driver, true).or_else(|| standing_out(&state.driver));
             let rows = longest.as_ref().map_or(0, |longest| longest.rows);
-            if let Some(summary) = state.summary(contradiction).filter(|_| piece.rows() > rows) {
-                let (rows, start) = (piece.rows(), piece.start());
-                longest = Some(PieceResult { rows, start, summary, residuals: piece.residuals() });
+            if state.estimated > 0 && piece.rows > rows {
+                let (summary, residuals) = (state.summary(contradiction), piece.residuals());
+                longest = Some(PieceResult { rows: piece.rows, start: piece.start(), summary, residuals });
             }
             if !piece.goes_on {
-                let refused = state.driver.faults().iter().map(|(reason, _)| reason.to_owned());
+                let refused = state.driver.faults.iter().map(|(reason, _)| reason.to_owned());
                 break (offset + piece.duration(), refused.collect());
             }
             offset += piece.room();
             curves.add_to_all(|curve| curve.add((offset, f64::NAN)));
         };
-        let (faults, rows) = (stream.faults.worded([&self.names.columns, &self.names.u]), stream.rows);
+        let (faults, rows) =
+            (stream.faults.worded([&self.names.columns, &experiment.design.names.inputs]), stream.rows);
         let Some(PieceResult { rows: scored, start, summary, residuals }) = longest else {
             return Err(Failure::Silent { rows, faults, refused });
         };

@@ -4,12 +4,11 @@
 //! `observer` and `recording`. After this, only rows can be wrong.
 
 use crate::closed_loop::baseline::{NamedBaseline, StartError};
-use crate::closed_loop::scope::{self, Estimates};
-use crate::experiment::columns::Columns;
-use crate::experiment::estimates::{ScoredEstimate, scored};
-use crate::experiment::layout::{ComparedBaseline, Layout, SourceSymbols, estimate, residual};
-use crate::experiment::panels::{CurveValue, PanelBuilder, Panels};
-use crate::experiment::setup::{Experiment, Parts};
+use crate::closed_loop::scope;
+use crate::experiment::estimates::ScoredEstimate;
+use crate::experiment::layout::{Layout, SourceSymbols, estimates, residual};
+use crate::experiment::panels::{CurveValue, PanelBuilder};
+use crate::experiment::setup::Experiment;
 use crate::figure::label::Label;
 use crate::figure::panel::PanelCurve;
 use crate::observe::design::Design;
@@ -20,13 +19,12 @@ use pebo_cas::Symbol;
 use pebo_design::analysis::Derivation;
 use pebo_design::model::{Baseline, Entry, Model, Recording, Scale};
 use pebo_design::plant::Plant;
-use pebo_design::program::Program;
 use pebo_design::source::{Diagnostic, Diagnostics};
 
 use super::alignment::InputRow;
 use super::log::Log;
 use super::replayed::Replayed;
-use super::residual::Residuals;
+use super::residual::{Residuals, formulas};
 use super::signals::Signals;
 
 /// An observer and the meaning of a log's columns, ready to be run.
@@ -34,21 +32,19 @@ use super::signals::Signals;
 pub struct Replay {
     pub(super) experiment: Experiment,
     pub(super) signals: Signals,
-    pub(super) residuals: Residuals<Program>,
+    pub(super) residuals: Residuals,
     pub(super) names: Names,
     /// The usual time from row to row, in seconds.
     period: Option<f64>,
 }
 
-/// The names of signals, in their order.
+/// Names of a recording's columns and of what is beside them.
 #[derive(Debug)]
 pub(super) struct Names {
     /// The columns that are read.
     pub(super) columns: Vec<String>,
-    pub(super) y: Vec<String>,
     /// The units of y.
     pub(super) units: Vec<Option<String>>,
-    pub(super) u: Vec<String>,
     /// The baselines that only a simulation can run.
     pub(super) left_out: Vec<String>,
 }
@@ -84,7 +80,7 @@ impl Replay {
     /// True if the output is a state of the observer: its rate is in the regression.
     pub(super) fn has_rate(&self, output: &str) -> bool {
         self.experiment.design.settings.output
-            && self.experiment.design.rows.iter().any(|row| self.names.y[*row] == output)
+            && self.experiment.design.rows.iter().any(|row| self.experiment.design.names.outputs[*row] == output)
     }
 
     /// The known numbers behind the observer's settings; none where gains are written.
@@ -112,59 +108,41 @@ fn replay(request: &Request, derivation: &Derivation, log: &mut Log, problems: &
     let design = if input_row == InputRow::Same { design.with_instant() } else { design };
     let (baselines, left_out) = baselines(request, &design, problems);
     let name = |symbol: Symbol| arena.name(symbol);
-    let recovered = design.recovered.iter().map(|state| name(*state));
-    let hat = |state: String| (state.clone(), arena.of_symbol(estimate(arena, &state)));
-    let hats: Estimates = recovered.map(hat).collect();
-    let residuals = Residuals::resolve(plant, (&hats, design.settings.late.as_ref()), &numbers);
+    let hats = estimates(arena, &design);
+    let (outputs, formulas) = formulas(plant, (&hats, design.settings.late.as_ref()), &numbers);
     let states: Vec<String> = plant.x.iter().map(|state| name(state.symbol)).collect();
-    let compared: Vec<ComparedBaseline> =
-        baselines.iter().map(|(baseline, _)| (baseline.clone(), states.clone())).collect();
-    let with_residual = residuals.outputs.iter().map(|(output, _)| plant.y[*output].symbol);
+    let compared: Vec<_> = baselines.iter().map(|(baseline, _)| (baseline.clone(), states.clone())).collect();
+    let with_residual = outputs.iter().map(|(output, _)| plant.y[*output].symbol);
     let source = SourceSymbols {
         x: signals.measured.iter().map(|place| plant.x[*place].symbol).collect(),
         residuals: with_residual.map(|output| residual(arena, &name(output))).collect(),
         ..SourceSymbols::default()
     };
     let layout = Layout::new(plant, &design, &compared, source);
-    let scored = scored(plant, derivation, &numbers, &layout);
-    let panels = panels(plant, (&layout, &compared), &scored.0, &residuals.outputs);
-    let residuals = residuals.compile(arena, &layout, (span, problems))?;
+    let residuals = problems.keep(layout.program(arena, &formulas, span))?;
+    let experiment = Experiment::resolve(
+        (plant, derivation, &numbers),
+        (design, layout),
+        (false, baselines),
+        |builder, (scored, _), _| add_panels(builder, plant, scored, &outputs),
+        (span, problems),
+    )?;
     Some(Replay {
         names: Names {
             columns: signals.wanted.iter().map(|column| log.columns()[*column].clone()).collect(),
-            y: plant.y.iter().map(|output| name(output.symbol)).collect(),
             units: plant.y.iter().map(|output| plant.units.get(&output.symbol).cloned()).collect(),
-            u: plant.commanded().map(name).collect(),
             left_out,
         },
         signals,
-        residuals,
+        experiment,
+        residuals: Residuals { outputs, formulas: residuals },
         period: shown.period(),
-        experiment: Parts {
-            plant,
-            derivation,
-            numbers: &numbers,
-            baselines,
-            columns: Columns::new(arena, &layout, std::iter::empty()),
-            design,
-            layout,
-            has_truth: false,
-            scored,
-            panels,
-            span,
-        }
-        .compile(problems)?,
     })
 }
 
-/// The panels: estimates beside measured states; errors; where no state was measured, residuals of these outputs.
-fn panels(
-    plant: &Plant,
-    (layout, baselines): (&Layout, &[ComparedBaseline]),
-    scored: &[ScoredEstimate],
-    residuals: &[(usize, bool)],
-) -> Panels {
-    let arena = &plant.arena;
+/// Adds the panels: estimates beside measured states; errors; where no state was measured, residuals of these outputs.
+fn add_panels(builder: &mut PanelBuilder<'_>, plant: &Plant, scored: &[ScoredEstimate], residuals: &[(usize, bool)]) {
+    let (arena, layout) = (&plant.arena, builder.layout);
     let curve = |symbol: Symbol, label: Label, place: usize| {
         let value = CurveValue::plain(arena.of_symbol(layout.symbols[place]));
         (symbol, PanelCurve::settling(label, false), value)
@@ -179,11 +157,9 @@ fn panels(
         let output = plant.y[*output].symbol;
         curve(output, Label::name(&arena.name(output)), place)
     });
-    let mut builder = PanelBuilder { plant, layout, baselines, found: Panels::default() };
     let measured = |state: &str| Label::name(state).remark("measured");
     // A recording has noise.
     builder.usual(measured, (Scale::Linear, errors.collect()), residuals.collect());
-    builder.found
 }
 
 /// The baselines by name, with their names, and the names of those that have equations.

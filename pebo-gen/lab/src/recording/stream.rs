@@ -21,9 +21,8 @@ const LOOKS: u64 = 1024;
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) line: u64,
-    pub(super) t: f64,
-    /// The time since the row before in its piece.
-    pub(super) dt: Option<f64>,
+    /// Its time, NaN where none is recorded.
+    time: f64,
     /// Measured states, outputs, and inputs without the time.
     pub(super) signals: Vec<f64>,
 }
@@ -31,7 +30,8 @@ pub(super) struct Row {
 /// What comes next.
 #[derive(Debug)]
 pub(super) enum Coming {
-    Row(Row),
+    /// A row at its instant, after so many seconds since the one before in its piece.
+    Row(Row, f64, Option<f64>),
     /// A new piece.
     Piece,
     End,
@@ -46,10 +46,10 @@ pub(super) struct RowStream<'a, 's> {
     clock: Clock,
     signals: Formulas,
     cells: Vec<f64>,
-    /// Rows that are astray: lines, recorded times and signals.
-    held: Vec<(u64, f64, Vec<f64>)>,
+    /// Rows that are astray.
+    held: Vec<Row>,
     /// Those of them that begin the present piece.
-    first: VecDeque<(u64, f64, Vec<f64>)>,
+    first: VecDeque<Row>,
     pub(super) faults: RowFaults,
     pub(super) rows: u64,
     /// The last line that was read.
@@ -81,32 +81,30 @@ impl<'a, 's> RowStream<'a, 's> {
     /// Goes on to the next row that has its place in time.
     pub(super) fn next(&mut self) -> Result<Coming, Failure> {
         loop {
-            let Some((line, recorded, signals)) =
-                self.first.pop_front().map_or_else(|| self.read(), |row| Ok(Some(row)))?
-            else {
+            let Some(row) = self.first.pop_front().map_or_else(|| self.read(), |row| Ok(Some(row)))? else {
                 // Too few to be a piece.
                 self.misplaced();
                 return Ok(Coming::End);
             };
-            let (instant, held) = self.clock.row(recorded);
+            let (instant, held) = self.clock.row(row.time);
             if held == Held::Misplaced {
                 self.misplaced();
             }
             match instant {
-                Instant::First(t) => return Ok(Coming::Row(Row { line, t, dt: None, signals })),
+                Instant::First(t) => return Ok(Coming::Row(row, t, None)),
                 Instant::Later { t, dt, gap } => {
                     if gap {
-                        self.faults.count(RowFault::Gap, line);
+                        self.faults.count(RowFault::Gap, row.line);
                     }
-                    return Ok(Coming::Row(Row { line, t, dt: Some(dt), signals }));
+                    return Ok(Coming::Row(row, t, Some(dt)));
                 }
-                Instant::Astray => self.held.push((line, recorded, signals)),
-                Instant::Timeless => self.faults.count(RowFault::Timeless, line),
+                Instant::Astray => self.held.push(row),
+                Instant::Timeless => self.faults.count(RowFault::Timeless, row.line),
             }
             if held == Held::Piece {
                 self.first.extend(self.held.drain(..));
                 self.clock = Clock::new(self.replay.signals.period);
-                self.first.iter().take(1).for_each(|(line, ..)| self.faults.count(RowFault::Piece, *line));
+                self.first.iter().take(1).for_each(|row| self.faults.count(RowFault::Piece, row.line));
                 return Ok(Coming::Piece);
             }
         }
@@ -114,11 +112,11 @@ impl<'a, 's> RowStream<'a, 's> {
 
     /// Counts the rows that are held as out of place.
     fn misplaced(&mut self) {
-        self.held.drain(..).for_each(|(line, ..)| self.faults.count(RowFault::Misplaced, line));
+        self.held.drain(..).for_each(|row| self.faults.count(RowFault::Misplaced, row.line));
     }
 
-    /// Reads a row: its line, its recorded time, NaN without one, and its signals.
-    fn read(&mut self) -> Result<Option<(u64, f64, Vec<f64>)>, Failure> {
+    /// Reads a row.
+    fn read(&mut self) -> Result<Option<Row>, Failure> {
         if self.rows > 0 && self.rows.is_multiple_of(LOOKS) && (self.watch)(self.rows, self.log.bytes()).is_break() {
             return Err(Failure::Stopped { line: self.line });
         }
@@ -145,10 +143,10 @@ impl<'a, 's> RowStream<'a, 's> {
         };
         self.rows += 1;
         let values = self.signals.of(cells);
-        let (recorded, signals) = match replay.signals.period {
+        let (time, signals) = match replay.signals.period {
             Some(_) => (f64::NAN, values),
             None => (values[0], &values[1..]),
         };
-        Ok(Some((self.line, recorded, signals.to_vec())))
+        Ok(Some(Row { line: self.line, time, signals: signals.to_vec() }))
     }
 }
