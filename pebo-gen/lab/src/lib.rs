@@ -16,6 +16,8 @@
 #[cfg(feature = "simulate")]
 mod closed_loop;
 #[cfg(feature = "simulate")]
+mod experiment;
+#[cfg(feature = "simulate")]
 mod figure;
 #[cfg(feature = "simulate")]
 mod observe;

@@ -4,8 +4,8 @@ use pebo_cas::Expr;
 use pebo_design::model::Simulation;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 
-use super::layout::{baseline_estimates, time};
 use super::scope::{Estimates, Names, Sight, View};
+use crate::experiment::layout::{baseline_estimates, time};
 use crate::overrides::Overrides;
 
 /// The source of the control law's estimates.

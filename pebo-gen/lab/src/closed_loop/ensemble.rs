@@ -12,8 +12,8 @@ use pebo_design::model::Scale;
 use pebo_design::source::Diagnostic;
 
 use super::failure::Failure;
-use super::layout::TIME;
 use super::scenario::Scenario;
+use crate::experiment::layout::TIME;
 use crate::figure::Sheet;
 use crate::figure::curve::DrawnCurve;
 use crate::figure::label::Label;
@@ -100,8 +100,9 @@ impl Scenario {
             self.seed = seed.wrapping_add(run);
             let mut peaks = pool.empty();
             let followed = self.follow(
-                &mut |sample, snapshot| {
-                    pool.spans.keep(&mut peaks, (sample, snapshot.table[TIME]), snapshot.errors);
+                &mut |plant, table| {
+                    let errors = &table[self.experiment.layout.errors.clone()];
+                    pool.spans.keep(&mut peaks, (plant.sample(), table[TIME]), errors);
                 },
                 &mut |done| progress((real(run) + done) / real(runs)),
             );
@@ -165,7 +166,7 @@ struct Pool {
 
 impl Pool {
     fn new(scenario: &Scenario, runs: u64) -> Self {
-        let estimates = scenario.scored.len();
+        let estimates = scenario.experiment.scored.len();
         let room = MOST_ERRORS / runs / u64::try_from(estimates).unwrap_or(1).max(1);
         let samples = scenario.timing.samples;
         let count = room.clamp(FEWEST_SPANS, SPANS).min(samples + 1);
@@ -228,7 +229,7 @@ impl Pool {
             let unsettled = all.iter().fold(0, |count, row| count + u64::from(!row[0].is_finite()));
             Spread { estimate, settled: of(0), unsettled, rms: of(1), worst: of(2), expected: of(3) }
         };
-        let estimates = scenario.scored.iter().map(|scored| scored.estimate.clone());
+        let estimates = scenario.experiment.scored.iter().map(|scored| scored.estimate.clone());
         let ensemble = Ensemble {
             seed,
             runs,
@@ -335,10 +336,11 @@ impl Ensemble {
             };
             curves.push(of_state().map(|(_, course)| drawn(course)).collect());
         }
-        let title = Label::text(&scenario.title).remark(&format!("median and 10 to 90 % of {} runs", self.runs));
+        let title =
+            Label::text(&scenario.experiment.title).remark(&format!("median and 10 to 90 % of {} runs", self.runs));
         let duration = scenario.timing.at(scenario.timing.samples);
         let time = ([0.0, duration], Label::name("t"));
-        Sheet { title: (&scenario.title, title), time, panels: &panels, curves: &curves }.draw()
+        Sheet { title: (&scenario.experiment.title, title), time, panels: &panels, curves: &curves }.draw()
     }
 }
 

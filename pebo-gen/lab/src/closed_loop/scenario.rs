@@ -4,35 +4,34 @@
 //! sections. After this, a run can fail only by its numbers.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use crate::settings::{Shown, start as start_of_extension};
 use pebo_cas::{Arena, Expr, Symbol};
 use pebo_design::analysis::Derivation;
-use pebo_design::model::{Model, Simulation};
+use pebo_design::model::{Baseline, Entry, Equations, Model, Simulation};
 use pebo_design::plant::Plant;
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_runtime::Fault;
 
-use super::baseline::{NamedBaseline, ResolvedBaseline};
+use super::baseline::ResolvedBaseline;
 use super::estimator::{estimator_text, overridden};
 use super::failure::{Failure, refused};
-use super::layout::{Layout, baseline_estimate, estimate};
 use super::ode::switching::{SwitchPrograms, Switches};
-use super::panels::Panels;
-use super::scope::{Estimates, Names, Sight, View};
+use super::panels::add_panels;
+use super::scope::{Names, Sight, View};
 use super::sensor::Sensors;
 use super::signal::Signal;
-use super::trace::Trace;
 use super::truth::Truth;
 use super::{control, ode};
-use crate::figure::panel::Panel;
-use crate::observe::design::{Design, program};
+use crate::experiment::layout::{
+    Layout, SourceSymbols, baseline_estimates, baseline_state, course, estimates, last_sample,
+};
+use crate::experiment::setup::Experiment;
+use crate::observe::design::Design;
 use crate::overrides::Overrides;
-use crate::score::domain::AssumedDomain;
 use crate::summary::advice::{Origin, advise};
-use crate::summary::{Estimate, Summary, short};
+use crate::summary::{Summary, short};
 use crate::timing::Timing;
 
 /// The most numbers of a table; as text this is some hundred megabytes.
@@ -41,21 +40,17 @@ const MOST_VALUES: f64 = 2e7;
 /// A closed loop, ready to be run.
 #[derive(Debug)]
 pub struct Scenario {
-    pub(crate) title: String,
+    pub(crate) experiment: Experiment,
     /// The estimator with its settings, as a file would have them.
     pub(crate) estimator: String,
     /// The baseline or `truth`, where the control law does not see the observer's estimates.
     pub(crate) feedback: Option<String>,
     pub(crate) timing: Timing,
-    pub(crate) layout: Layout,
-    pub(crate) design: Design,
     pub(crate) signals: Vec<Signal>,
     /// The state at the start.
     pub(crate) start: Program,
     /// The values of states and outputs that are not integrated, with their positions in the table.
     pub(crate) given: (Vec<usize>, Program),
-    /// The last samples of the sensors.
-    pub(crate) measured: Program,
     pub(crate) sensors: Sensors,
     /// The seed of the random numbers.
     pub(crate) seed: u64,
@@ -71,38 +66,12 @@ pub struct Scenario {
     pub(crate) switches: Option<SwitchPrograms>,
     /// The baselines' estimates.
     pub(crate) baseline_estimates: Program,
-    /// Baselines that take samples, with the positions of their estimates.
-    pub(crate) followers: Vec<(Range<usize>, NamedBaseline)>,
     /// The inputs.
     pub(crate) control: Program,
-    /// The estimates, those of the observer first.
-    pub(crate) scored: Vec<ScoredEstimate>,
-    /// Their errors.
-    pub(crate) errors: Program,
-    pub(crate) panels: Vec<Panel>,
-    /// The values of the panels' curves.
-    pub(crate) curves: Program,
-    /// What the plant's author assumes of it.
-    pub(crate) assumed: AssumedDomain,
-    /// The names of the trace's columns.
-    pub(crate) columns: Vec<String>,
     /// The names of the table's values.
     pub(crate) names: Vec<String>,
     /// The help where the left inverse has no value at the start of the extension.
     restart: String,
-    span: Span,
-}
-
-/// An estimate that is compared with the state that it is of.
-#[derive(Debug)]
-pub(crate) struct ScoredEstimate {
-    pub(crate) estimate: Estimate,
-    /// The position of the state in the table.
-    pub(crate) truth: usize,
-    /// The period of an angle.
-    pub(crate) period: Option<f64>,
-    /// The step, if the outputs determine the state only up to multiples of it.
-    pub(crate) step: Option<f64>,
 }
 
 impl Scenario {
@@ -146,8 +115,11 @@ impl Scenario {
     pub fn advise(&self, summary: &Summary) -> Vec<Diagnostic> {
         advise(
             summary,
-            (&self.design.settings.estimator, Origin::Simulated(&self.departures, self.moving_state.as_deref())),
-            self.span,
+            (
+                &self.experiment.design.settings.estimator,
+                Origin::Simulated(&self.departures, self.moving_state.as_deref()),
+            ),
+            self.experiment.span,
         )
     }
 
@@ -159,7 +131,7 @@ impl Scenario {
         };
         let help = match failure {
             Failure::Refused { at, fault: Fault::Estimate, .. } if *at <= 0.0 => self.restart.clone(),
-            Failure::NotFinite { name, .. } if self.inputs().any(|input| input == name) => {
+            Failure::NotFinite { name, .. } if self.experiment.design.names.inputs.contains(name) => {
                 format!(
                     "the formula of `{name}` under `control` has no value there: check its roots, logarithms and quotients"
                 )
@@ -168,16 +140,11 @@ impl Scenario {
         };
         let message = match failure {
             Failure::Refused { at, samples, fault } => {
-                format!("{}: {}", refused(*at, *samples), self.design.names.words(*fault))
+                format!("{}: {}", refused(*at, *samples), self.experiment.design.names.words(*fault))
             }
             _ => failure.to_string(),
         };
-        Diagnostic::error(code, self.span, message).help(help)
-    }
-
-    /// The names of the inputs.
-    fn inputs(&self) -> impl Iterator<Item = &String> {
-        self.names[self.layout.u.clone()].iter()
+        Diagnostic::error(code, self.experiment.span, message).help(help)
     }
 }
 
@@ -222,7 +189,7 @@ impl Resolution<'_> {
         let in_time = names.scope(&View { sight: Sight::Signals, ..View::default() });
         let courses = simulation.signals.iter().chain(&simulation.plant);
         let signals: Vec<Signal> = courses.map(|entry| Signal::resolve(arena, &in_time, entry, problems)).collect();
-        let mut baselines: Vec<ResolvedBaseline> = simulation
+        let baselines: Vec<ResolvedBaseline> = simulation
             .baselines
             .iter()
             .filter_map(|entry| ResolvedBaseline::resolve(&names, entry, problems))
@@ -233,23 +200,20 @@ impl Resolution<'_> {
         // After the start, of which it takes its numbers where none are written.
         let shown = Shown::of_period(overrides.step);
         let design = Design::resolve(&names.request(), derivation, &numbers, &shown, problems);
-        let (timing, mut design, mut rates) = (timing?, design?, rates?);
+        let (timing, design, mut rates) = (timing?, design?, rates?);
         problems.keep(admit_delays(names.model, &timing))?;
 
-        let hats: Estimates = design
-            .recovered
-            .iter()
-            .map(|s| arena.name(*s))
-            .map(|s| (s.clone(), arena.of_symbol(estimate(arena, &s))))
-            .collect();
+        let hats = estimates(arena, &design);
         let feedback = control::feedback(&names, overrides, problems)?;
         let control = control::law(&names, &feedback, &hats, problems);
-        let errors = errors(plant, &Periods::of(plant, derivation, &numbers), &hats);
-        let panels = Panels::resolve(&names, (&hats, design.predicts()), &errors, &baselines, problems);
 
-        let layout = Layout::new(plant, simulation, &design);
+        let compared = |entry: &Entry<Baseline>| {
+            let states = baseline_estimates(plant, entry).into_iter().map(|(state, _)| state);
+            (entry.name.value.clone(), states.collect())
+        };
+        let compared: Vec<_> = simulation.baselines.iter().map(compared).collect();
+        let layout = Layout::new(plant, &design, &compared, symbols(&names));
         let (layout, switches) = Switches::of(arena, layout, &mut rates);
-        let state = &layout.symbols[layout.state.clone()];
         let switches = problems.keep(switches.programs(arena, &layout.symbols, span));
         if layout.state.len() > ode::LARGEST {
             let message = format!("plant and baselines have {} states", layout.state.len());
@@ -258,58 +222,68 @@ impl Resolution<'_> {
                     .help(format!("the simulator has room for {}", ode::LARGEST)),
             );
         }
-        let columns = columns(plant, &design, &baselines);
-        problems.keep(admit_table(&timing, columns.len()));
-        let followers = followers(plant, &layout, &mut baselines);
-        let estimates: Vec<Expr> =
+        let of_baselines: Vec<Expr> =
             baselines.iter().flat_map(|baseline| baseline.estimates.iter().map(|e| e.1)).collect();
         let outputs = plant.y.iter().map(|output| output.symbol);
-        let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs.clone()).collect();
+        let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs).collect();
         let (places, given): (Vec<usize>, Vec<Expr>) = truth.given(&states).into_iter().unzip();
-        let measured: Vec<Expr> = outputs.map(|output| names.measured(output)).collect();
         let sensors = Sensors::resolve(plant, simulation, (&timing, span), problems);
-        let compared: Vec<(String, Estimates)> =
-            baselines.iter().map(|baseline| (baseline.name.clone(), baseline.estimates.clone())).collect();
-        let (scored, errors) =
-            scored((plant, &layout.symbols), &Periods::of(plant, derivation, &numbers), &hats, &compared);
+        let named = baselines.into_iter().filter_map(|baseline| Some((baseline.name, baseline.sampled?)));
+        let mut experiment = Experiment::resolve(
+            (plant, derivation, &numbers),
+            (design, layout),
+            (true, named.collect()),
+            |builder, (_, errors), problems| add_panels(builder, &names, (&hats, &errors[..hats.len()]), problems),
+            (span, &mut *problems),
+        )?;
+        problems.keep(admit_table(&timing, experiment.columns.names.len()));
+        let layout = &experiment.layout;
         let mut compile = |values: &[Expr]| problems.keep(layout.program(arena, values, span));
         let control = compile(&control)?;
         if let Some(share) = overrides.initial_error {
-            begin(&names, (&layout, &signals, &control), &start, share, &mut design.settings.chi_0);
+            let chi_0 = &mut experiment.design.settings.chi_0;
+            begin(&names, (layout, &signals, &control), &start, share, chi_0);
         }
         Some(Scenario {
-            title: plant.title.clone().unwrap_or_else(|| plant.name.clone()),
             estimator: estimator_text(&names.model.observer),
             feedback: (feedback != Simulation::OBSERVER).then_some(feedback),
             start: compile(&start)?,
             given: (places.iter().map(|place| layout.state.start + place).collect(), compile(&given)?),
-            measured: compile(&measured)?,
             sensors,
             departures: simulation.departures(&names.model.observer.delay),
             moving_state: moving_state(&names),
             seed: overrides.seed.unwrap_or(Overrides::SEED),
             rates: compile(&rates)?,
-            slopes: compile(&slopes(arena, &rates, state))?,
+            slopes: compile(&slopes(arena, &rates, &layout.symbols[layout.state.clone()]))?,
             switches: switches?,
-            baseline_estimates: compile(&estimates)?,
-            followers,
+            baseline_estimates: compile(&of_baselines)?,
             control,
-            scored,
-            errors: compile(&errors)?,
-            curves: compile(&panels.values)?,
-            panels: panels.panels,
-            assumed: AssumedDomain::of(plant, &derivation.conditions, &layout.symbols, |assumed| {
-                compile(&arena.substitute_all(assumed, &numbers))
-            })?,
-            names: layout.names(arena, &(0..layout.symbols.len())),
+            names: layout.symbols.iter().map(|symbol| arena.name(*symbol)).collect(),
             timing,
-            design,
             signals,
-            columns,
-            layout,
             restart: restart(&names, derivation),
-            span,
+            experiment,
         })
+    }
+}
+
+/// The symbols of a simulation: the state, signals, and samples of imperfect sensors.
+fn symbols(names: &Names) -> SourceSymbols {
+    let Names { plant, simulation, .. } = names;
+    let arena = &plant.arena;
+    let with_equations = simulation.baselines.iter().filter_map(|b| Some((&b.name.value, b.value.equations()?)));
+    let of_baseline = |(name, b): (&String, &Equations)| -> Vec<Symbol> {
+        b.state.iter().map(|entry| baseline_state(arena, name, &entry.name.value)).collect()
+    };
+    let signals = simulation.signals.iter().map(|signal| arena.symbol(&signal.name.value));
+    let courses = simulation.plant.iter().map(|entry| course(arena, &entry.name.value));
+    let imperfect = plant.y.iter().filter(|_| simulation.is_imperfect());
+    SourceSymbols {
+        x: plant.x.iter().map(|state| state.symbol).collect(),
+        baselines: with_equations.flat_map(of_baseline).collect(),
+        signals: signals.chain(courses).collect(),
+        last_samples: imperfect.map(|output| last_sample(arena, &arena.name(output.symbol))).collect(),
+        residuals: Vec::new(),
     }
 }
 
@@ -402,104 +376,6 @@ fn rates(
 /// The derivatives of rates by the state, by rows.
 fn slopes(arena: &Arena, rates: &[Expr], state: &[Symbol]) -> Vec<Expr> {
     rates.iter().flat_map(|rate| state.iter().map(|symbol| arena.derivative(*rate, *symbol))).collect()
-}
-
-/// The baselines that take samples, with the positions of their estimates.
-fn followers(plant: &Plant, layout: &Layout, baselines: &mut [ResolvedBaseline]) -> Vec<(Range<usize>, NamedBaseline)> {
-    let first = plant.x.first().map(|state| plant.arena.name(state.symbol)).unwrap_or_default();
-    let follower = |baseline: &mut ResolvedBaseline| {
-        let sampled = baseline.sampled.take()?;
-        let symbol = baseline_estimate(&plant.arena, &baseline.name, &first);
-        let start = layout.symbols.iter().position(|known| *known == symbol)?;
-        Some((start..start + plant.x.len(), sampled))
-    };
-    baselines.iter_mut().filter_map(follower).collect()
-}
-
-/// Periods up to which states are known.
-#[derive(Debug)]
-pub(crate) struct Periods {
-    /// Of angles: values that differ by it are the same.
-    of_angles: BTreeMap<Symbol, Expr>,
-    /// Of states that are no angles: the outputs do not distinguish values that differ by it.
-    steps: BTreeMap<Symbol, Expr>,
-}
-
-impl Periods {
-    pub(crate) fn of(plant: &Plant, derivation: &Derivation, numbers: &BTreeMap<Symbol, Expr>) -> Self {
-        let each = |pairs: &[(Symbol, Expr)]| {
-            pairs.iter().map(|(state, period)| (*state, plant.arena.substitute(*period, numbers))).collect()
-        };
-        Self {
-            of_angles: each(derivation.left_inverse.result.as_ref().map_or(&[], |inverse| &inverse.modulo)),
-            steps: each(derivation.regression.result.as_ref().map_or(&[], |regression| &regression.steps)),
-        }
-    }
-}
-
-/// Estimate less truth; for an angle, the difference with the least absolute value.
-fn errors(plant: &Plant, periods: &Periods, hats: &Estimates) -> Vec<Expr> {
-    use pebo_cas::Function::{Atan2, Cos, Sin};
-    let arena = &plant.arena;
-    let error = |(state, hat): &(String, Expr)| {
-        let symbol = arena.symbol(state);
-        let difference = arena.sub(*hat, arena.of_symbol(symbol));
-        let Some(&period) = periods.of_angles.get(&symbol) else { return difference };
-        let turn = arena.div(arena.turn(), period);
-        let angle = arena.mul(turn, difference);
-        arena.div(arena.call(Atan2, &[arena.call(Sin, &[angle]), arena.call(Cos, &[angle])]), turn)
-    };
-    hats.iter().map(error).collect()
-}
-
-/// Every estimate of a state of the table with its error: those of the observer, then those of each baseline.
-pub(crate) fn scored(
-    (plant, table): (&Plant, &[Symbol]),
-    periods: &Periods,
-    hats: &Estimates,
-    baselines: &[(String, Estimates)],
-) -> (Vec<ScoredEstimate>, Vec<Expr>) {
-    let arena = &plant.arena;
-    let of_baselines = baselines.iter().flat_map(|(baseline, estimates)| {
-        let written = |state: &String| arena.of_symbol(baseline_estimate(arena, baseline, state));
-        estimates.iter().map(move |(state, _)| (Some(baseline.clone()), (state.clone(), written(state))))
-    });
-    let own = hats.iter().cloned().map(|estimate| (None, estimate));
-    let is_known = |(_, (state, _)): &(Option<String>, (String, Expr))| table.contains(&arena.symbol(state));
-    let (names, estimates): (Vec<_>, Estimates) = own.chain(of_baselines).filter(is_known).unzip();
-    let judge = |(baseline, (state, _)): (Option<String>, &(String, Expr))| {
-        let symbol = arena.symbol(state);
-        let number = |periods: &BTreeMap<Symbol, Expr>| {
-            let program = program(arena, &[], &[*periods.get(&symbol)?], Span::NOWHERE).ok()?;
-            Interpreter::new(&program).evaluate(|_| f64::NAN).next()
-        };
-        Some(ScoredEstimate {
-            estimate: Estimate { baseline, state: state.clone(), unit: plant.units.get(&symbol).cloned() },
-            truth: table.iter().position(|known| *known == symbol)?,
-            period: number(&periods.of_angles),
-            step: number(&periods.steps),
-        })
-    };
-    let scored = names.into_iter().zip(&estimates).filter_map(judge).collect();
-    (scored, errors(plant, periods, &estimates))
-}
-
-fn columns(plant: &Plant, design: &Design, baselines: &[ResolvedBaseline]) -> Vec<String> {
-    let arena = &plant.arena;
-    let states = plant.x.iter().map(|state| state.symbol);
-    let signals = states.chain(plant.y.iter().map(|output| output.symbol)).chain(plant.commanded());
-    let mut columns = vec!["t".to_owned()];
-    columns.extend(signals.map(|symbol| arena.name(symbol)));
-    let recovered = || design.recovered.iter().map(|state| arena.name(*state));
-    for state in recovered() {
-        columns.extend([format!("{state}_hat"), format!("{state}{}", Trace::ERROR)]);
-    }
-    for baseline in baselines {
-        columns.extend(baseline.estimates.iter().map(|(state, _)| format!("{}.{state}_hat", baseline.name)));
-    }
-    let predicted = recovered().filter(|_| design.predicts());
-    columns.extend(predicted.map(|state| format!("{state}{}", Trace::STANDARD_ERROR)));
-    columns
 }
 
 /// Refuses a run that ends before the first late sample arrives.

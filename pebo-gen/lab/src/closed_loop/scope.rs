@@ -7,15 +7,20 @@
 use std::collections::BTreeMap;
 
 use pebo_cas::{Expr, Symbol};
-use pebo_design::model::{Entry, Equations, Formula, Model, Simulation};
+use pebo_design::model::{Decimal, Entry, Equations, Formula, Model, Simulation, Spanned};
 use pebo_design::plant::{Plant, Scope, lower};
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span, listed};
 
-use super::layout::{baseline_state, last_sample, time};
+use crate::experiment::layout::{baseline_state, last_sample, time};
 use crate::observe::request::Request;
 
 /// Estimates by the state's name.
 pub(crate) type Estimates = Vec<(String, Expr)>;
+
+/// The number of a name among the entries.
+pub(crate) fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
+    entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
+}
 
 /// The names visible to a formula besides parameters; each level has more than the one before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -13,11 +13,12 @@
 
 use std::collections::VecDeque;
 
-use pebo_design::model::{Decimal, Entry, Simulation, Spanned};
+use pebo_design::model::{Decimal, Simulation, Spanned};
 use pebo_design::plant::Plant;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, Span};
 
 use super::noise::{DROPPED, JITTER, even, normal};
+use super::scope::number;
 use crate::timing::{Timing, whole};
 
 /// The most steps of a delay: all samples in between are kept.
@@ -67,7 +68,7 @@ impl Sensors {
             return perfect;
         }
         let sensor = |output: String| {
-            let of = |entries| number(entries, &output);
+            let of = |entries| number(entries, &output).unwrap_or_default();
             Sensor {
                 delay: simulation.delay.of(&output).map_or(0.0, |delay| delay.value.to_f64()),
                 bias: of(&simulation.bias),
@@ -84,11 +85,6 @@ impl Sensors {
     pub(crate) fn begin(&self, seed: u64, slack: f64) -> SensorState<'_> {
         SensorState { sensors: self, seed, slack, past: vec![VecDeque::new(); self.each.len()] }
     }
-}
-
-/// The entry of an output; 0 if there is none.
-fn number(entries: &[Entry<Spanned<Decimal>>], output: &str) -> f64 {
-    entries.iter().find(|entry| entry.name.value == output).map_or(0.0, |entry| entry.value.value.to_f64())
 }
 
 /// The state of the sensors in a run.

@@ -6,7 +6,7 @@ use pebo_design::plant::{Scope, lower};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Code, Diagnostic, Diagnostics};
 
-use super::layout::time;
+use crate::experiment::layout::time;
 use crate::observe::design::program;
 
 /// A signal.

@@ -1,7 +1,6 @@
 //! The course of a run: a table on a grid of instants, and the curves of the figure.
 
-use std::fmt::Write as _;
-
+use crate::experiment::columns::{self, write_row};
 use crate::figure::curve::DrawnCurve;
 use crate::summary::Summary;
 
@@ -21,10 +20,10 @@ pub struct Trace {
 
 impl Trace {
     /// The suffix of the names of error columns.
-    pub const ERROR: &str = "_error";
+    pub const ERROR: &str = columns::ERROR;
 
     /// The suffix of the names of standard errors.
-    pub const STANDARD_ERROR: &str = "_std";
+    pub const STANDARD_ERROR: &str = columns::STANDARD_ERROR;
 
     /// The table row by row, each panel's curves, and the summary of the run.
     pub(crate) fn new(
@@ -66,27 +65,8 @@ impl Trace {
     pub fn csv(&self) -> String {
         let mut text = self.columns.join(",");
         text.push('\n');
-        for row in self.rows() {
-            for (position, value) in row.iter().enumerate() {
-                let separator = if position + 1 == row.len() { '\n' } else { ',' };
-                // No standard error is predicted before the first sample.
-                let written = if value.is_finite() { write_number(&mut text, *value) } else { Ok(()) };
-                debug_assert!(written.is_ok(), "a string takes everything");
-                text.push(separator);
-            }
-        }
+        // No standard error is predicted before the first sample.
+        self.rows().for_each(|row| write_row(&mut text, row.iter().copied()));
         text
-    }
-}
-
-/// The shortest text that reads back as the same number; an exponent where that is shorter than zeros.
-pub(crate) fn write_number(text: &mut String, value: f64) -> std::fmt::Result {
-    let magnitude = value.abs();
-    if value == 0.0 {
-        text.write_char('0')
-    } else if (1e-5..1e16).contains(&magnitude) {
-        write!(text, "{value}")
-    } else {
-        write!(text, "{value:e}")
     }
 }

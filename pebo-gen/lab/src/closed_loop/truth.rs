@@ -10,8 +10,8 @@ use pebo_cas::{Expr, Rational, Symbol};
 use pebo_design::plant::Plant;
 use pebo_design::source::{Code, Diagnostic, Diagnostics, listed};
 
-use super::layout::{course, time};
 use super::scope::Names;
+use crate::experiment::layout::{course, time};
 
 /// The true values of the plant.
 #[derive(Debug)]

@@ -55,8 +55,10 @@ pub(crate) struct CertaintyMonitor<'a> {
     weakest: Option<(&'a Wanted, f64)>,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum State {
+/// Whether data or estimates are good enough, and since when.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum State {
+    #[default]
     NotYet,
     Converged(f64),
     Lost(f64),

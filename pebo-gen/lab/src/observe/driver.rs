@@ -34,14 +34,17 @@ pub(crate) struct ObserverDriver {
     /// Intervals since the last accepted sample, if there are any but the current one.
     gap: Option<Gap<f64, LARGEST>>,
     started: bool,
-    refused: u64,
+    /// The samples that were refused since the last accepted one.
+    pub(crate) refused: u64,
     names: SignalNames,
-    faults: Faults,
-    dropped: u64,
-    /// The samples that lacked outputs.
-    parted: u64,
+    /// The samples that were refused.
+    pub(crate) faults: Faults,
+    /// The samples that never arrived.
+    pub(crate) dropped: u64,
+    /// The samples that were taken without some of their outputs.
+    pub(crate) parted: u64,
     /// Those at which there was no estimate.
-    stateless: u64,
+    pub(crate) stateless: u64,
     /// Samples since an innovation was judged.
     unjudged: u64,
     /// Samples from one judged innovation to the next, after so many that are all judged.
@@ -144,11 +147,6 @@ impl ObserverDriver {
         self.refused > 0 && (!self.has_started() || self.refused >= PATIENCE)
     }
 
-    /// The number of samples that were refused since the last accepted one.
-    pub(crate) fn refused(&self) -> u64 {
-        self.refused
-    }
-
     /// True if a sample has been accepted.
     pub(crate) fn has_started(&self) -> bool {
         self.started
@@ -168,21 +166,6 @@ impl ObserverDriver {
     fn wait(&mut self, u: &[f64], dt: f64) {
         // Of a time that is none nothing is taken: it was refused with its sample.
         let _ = self.gap.get_or_insert_default().add(&pad(u), dt);
-    }
-
-    /// The samples that were refused.
-    pub(crate) fn faults(&self) -> &Faults {
-        &self.faults
-    }
-
-    /// The samples that were taken without some of their outputs.
-    pub(crate) fn parted(&self) -> u64 {
-        self.parted
-    }
-
-    /// The samples that were taken while there was no estimate.
-    pub(crate) fn stateless(&self) -> u64 {
-        self.stateless
     }
 
     /// The normalised square of innovations, on average over samples and rows: 1 where model and numbers are right.
@@ -214,15 +197,5 @@ impl ObserverDriver {
     pub(crate) fn standard_errors(&self) -> Option<Vec<f64>> {
         let age = self.gap.map_or(0.0, |mut gap| gap.take().1);
         self.observer.standard_errors(age)
-    }
-
-    /// The number of restarts after gaps.
-    pub(crate) fn restarts(&self) -> u64 {
-        self.observer.restarts()
-    }
-
-    /// The samples that never arrived.
-    pub(crate) fn dropped(&self) -> u64 {
-        self.dropped
     }
 }

@@ -13,13 +13,20 @@ use pebo_runtime::{
     NormalisedGradient, RegressorExtension, Response, Turn, Uncertain,
 };
 
+use super::excitation::{ComponentInformation, Gramian};
 use super::setup::{self, Covariance, Extension};
 use super::sizes::{LARGEST, MOST_MIXED, pad, padded, resized};
 
-/// An estimator of a model padded to the size N. Not behind a pointer where that can be: the observer works on a copy
-/// in each step.
+/// An estimator of a model padded to the size N, with the Gramian of its data.
+#[derive(Clone, Debug)]
+pub(crate) struct PaddedEstimator<const N: usize> {
+    kind: Kind<N>,
+    data: Gramian<N>,
+}
+
+/// Not behind a pointer where that can be: the observer works on a copy in each step.
 #[derive(Debug)]
-pub(crate) enum PaddedEstimator<const N: usize> {
+enum Kind<const N: usize> {
     Gradient(Gradient<f64, N>),
     Normalised(NormalisedGradient<f64, N>),
     /// Those with a covariance.
@@ -29,29 +36,52 @@ pub(crate) enum PaddedEstimator<const N: usize> {
 }
 
 impl<const N: usize> PaddedEstimator<N> {
-    /// The estimator with its settings, which have a value for each of the unknowns.
-    pub(crate) fn new(settings: &setup::Estimator) -> Result<Self, Fault> {
+    /// The estimator with its settings, which have a value for each of so many unknowns.
+    pub(crate) fn new(settings: &setup::Estimator, unknowns: usize) -> Result<Self, Fault> {
         // Settings of a padded unknown have no effect, but must be positive.
         let all = |values: &[f64]| -> SVector<f64, N> { padded(values, 1.0) };
-        Ok(match settings {
-            setup::Estimator::Gradient(gain) => Self::Gradient(Gradient::diagonal(&all(gain))?),
+        let kind = match settings {
+            setup::Estimator::Gradient(gain) => Kind::Gradient(Gradient::diagonal(&all(gain))?),
             setup::Estimator::NormalisedGradient { gain, mu } => {
-                Self::Normalised(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
+                Kind::Normalised(NormalisedGradient::new(Gradient::diagonal(&all(gain))?, *mu)?)
             }
-            setup::Estimator::LeastSquares(covariance) => Self::Squares(squares(covariance)?),
+            setup::Estimator::LeastSquares(covariance) => Kind::Squares(squares(covariance)?),
             setup::Estimator::AdaptiveLeastSquares(covariance, guess) => {
-                Self::Adaptive(AdaptiveLeastSquares::new(squares(covariance)?, &pad(guess))?)
+                Kind::Adaptive(AdaptiveLeastSquares::new(squares(covariance)?, &pad(guess))?)
             }
             setup::Estimator::Drem { gain, extension } if gain.len() <= MOST_MIXED => {
-                Self::Mixed(mixed(gain, extension)?)
+                Kind::Mixed(mixed(gain, extension)?)
             }
             // Refused when the settings are resolved.
             setup::Estimator::Drem { .. } => return Err(Fault::Gain),
-        })
+        };
+        let forgetting = match settings {
+            setup::Estimator::LeastSquares(Covariance { forgetting, .. })
+            | setup::Estimator::AdaptiveLeastSquares(Covariance { forgetting, .. }, _)
+            | setup::Estimator::Drem { extension: Extension::Kreisselmeier { forgetting, .. }, .. }
+            | setup::Estimator::Drem { extension: Extension::LeastSquares(Covariance { forgetting, .. }), .. } => {
+                *forgetting
+            }
+            _ => 0.0,
+        };
+        Ok(Self { kind, data: Gramian::new(unknowns, forgetting) })
+    }
+
+    /// The factor of the process noise, as a multiple of the settings'.
+    pub(crate) fn factor(&self) -> f64 {
+        match &self.kind {
+            Kind::Adaptive(squares) => squares.factor(),
+            Kind::Gradient(_) | Kind::Normalised(_) | Kind::Squares(_) | Kind::Mixed(_) => 1.0,
+        }
+    }
+
+    /// The information of the data on each component of the unknown.
+    pub(crate) fn component_information(&self) -> ComponentInformation {
+        self.data.component_information()
     }
 }
 
-impl<const N: usize> Clone for PaddedEstimator<N> {
+impl<const N: usize> Clone for Kind<N> {
     fn clone(&self) -> Self {
         match self {
             Self::Gradient(gradient) => Self::Gradient(*gradient),
@@ -63,15 +93,7 @@ impl<const N: usize> Clone for PaddedEstimator<N> {
     }
 }
 
-impl<const N: usize> PaddedEstimator<N> {
-    /// The factor of the process noise, as a multiple of the settings'.
-    pub(crate) fn factor(&self) -> f64 {
-        match self {
-            Self::Adaptive(squares) => squares.factor(),
-            Self::Gradient(_) | Self::Normalised(_) | Self::Squares(_) | Self::Mixed(_) => 1.0,
-        }
-    }
-
+impl<const N: usize> Kind<N> {
     fn face(&self) -> &dyn DynEstimator<N> {
         match self {
             Self::Gradient(gradient) => gradient,
@@ -95,45 +117,48 @@ impl<const N: usize> PaddedEstimator<N> {
 
 impl<const N: usize> Uncertain<f64, N> for PaddedEstimator<N> {
     fn covariance_root(&self, dt: f64) -> Option<SMatrix<f64, N, N>> {
-        match self {
-            Self::Squares(squares) => squares.covariance_root(dt),
-            Self::Adaptive(squares) => squares.covariance_root(dt),
-            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
+        match &self.kind {
+            Kind::Squares(squares) => squares.covariance_root(dt),
+            Kind::Adaptive(squares) => squares.covariance_root(dt),
+            Kind::Gradient(_) | Kind::Normalised(_) | Kind::Mixed(_) => None,
         }
     }
 }
 
 impl<const N: usize> Estimator<f64, N, N> for PaddedEstimator<N> {
     fn advance(&mut self, regressor: &SMatrix<f64, N, N>, regressand: &SVector<f64, N>, dt: f64) -> Result<(), Fault> {
-        self.face_mut().advance(regressor, regressand, dt)
+        self.data.add(regressor, dt);
+        self.kind.face_mut().advance(regressor, regressand, dt)
     }
 
     fn estimate(&self) -> SVector<f64, N> {
-        self.face().estimate()
+        self.kind.face().estimate()
     }
 
     fn shift(&mut self, shift: &SVector<f64, N>) {
-        self.face_mut().shift(shift);
+        self.kind.face_mut().shift(shift);
     }
 
     fn information(&self) -> Option<&Information<f64, N>> {
-        match self {
-            Self::Squares(squares) => Estimator::<f64, N, N>::information(squares),
-            Self::Adaptive(squares) => Estimator::<f64, N, N>::information(squares),
-            Self::Gradient(_) | Self::Normalised(_) | Self::Mixed(_) => None,
+        match &self.kind {
+            Kind::Squares(squares) => Estimator::<f64, N, N>::information(squares),
+            Kind::Adaptive(squares) => Estimator::<f64, N, N>::information(squares),
+            Kind::Gradient(_) | Kind::Normalised(_) | Kind::Mixed(_) => None,
         }
     }
 
     fn turn(&mut self, turn: &Turn<f64, N>) {
-        self.face_mut().turn(turn);
+        self.data.turn(turn);
+        self.kind.face_mut().turn(turn);
     }
 
     fn reset(&mut self, estimate: &SVector<f64, N>) {
-        self.face_mut().reset(estimate);
+        self.data.reset();
+        self.kind.face_mut().reset(estimate);
     }
 
     fn is_finite(&self) -> bool {
-        self.face().is_finite()
+        self.kind.face().is_finite()
     }
 }
 

@@ -17,6 +17,8 @@ use pebo_runtime::Turn;
 use pebo_runtime::nalgebra::SMatrix;
 use serde::Serialize;
 
+use super::certainty::State;
+
 /// The share below which a component is not distinguished: its standard error is then a thousand times as large as with
 /// the other components known.
 const ENOUGH: f64 = 1e-6;
@@ -157,14 +159,6 @@ pub(crate) struct ExcitationMonitor {
     weakest: usize,
     /// The variance of each component that was just enough when all were determined first, in units of the noise.
     enough: Vec<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-enum State {
-    #[default]
-    NotYet,
-    Converged(f64),
-    Lost(f64),
 }
 
 impl ExcitationMonitor {

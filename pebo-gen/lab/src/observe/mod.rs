@@ -6,7 +6,6 @@ pub(crate) mod driver;
 pub(crate) mod estimator;
 pub(crate) mod excitation;
 mod interpreted;
-mod monitored;
 pub(crate) mod operator;
 pub(crate) mod padded;
 pub(crate) mod request;

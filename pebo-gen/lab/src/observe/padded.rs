@@ -16,9 +16,9 @@ use pebo_design::analysis::RegressionKind;
 use pebo_design::plant::settings::PATIENCE;
 
 use super::design::Design;
+use super::estimator::PaddedEstimator;
 use super::excitation::ComponentInformation;
 use super::interpreted::{Derived, Dynamic, ReadableExtension, RegressionType, Static};
-use super::monitored::MonitoredEstimator;
 use super::operator::PaddedOperator;
 use super::setup::{self, Covariance, Estimator, Operator, Rebase};
 use super::sizes::{LARGEST, MOST_MIXED, SMALL, pad, padded};
@@ -91,16 +91,16 @@ fn of_size<const N: usize>(design: &Design) -> Result<Box<dyn DynObserver>, Faul
 
 type PaddedModel<X, K, const N: usize> = Within<Derived<X, K, N>, f64, N>;
 
-type PaddedEstimator<const N: usize> = Bounded<f64, MonitoredEstimator<N>, N>;
+type BoundedEstimator<const N: usize> = Bounded<f64, PaddedEstimator<N>, N>;
 
 type Inner<X, K, const N: usize> =
-    Observer<PaddedModel<X, K, N>, PaddedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>>;
+    Observer<PaddedModel<X, K, N>, BoundedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>>;
 
 /// The samples that may be on their way: the most that settings ask for. More room changes no estimate.
 pub(crate) const ON_THEIR_WAY: usize = 1024;
 
 type Delayed<X, K, const N: usize> =
-    LateObserver<PaddedModel<X, K, N>, PaddedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>, ON_THEIR_WAY>;
+    LateObserver<PaddedModel<X, K, N>, BoundedEstimator<N>, N, N, N, N, N, N, PaddedOperator<N>, ON_THEIR_WAY>;
 
 /// The runtime's observer at size N, with samples on time or late.
 #[allow(clippy::large_enum_variant, reason = "one of a run, and the smaller variant is the usual one")]
@@ -203,8 +203,7 @@ impl<X: ReadableExtension<N>, K: RegressionType, const N: usize> PaddedObserver<
     fn new(design: &Design) -> Result<Self, Fault> {
         let settings = &design.settings;
         let [lower, upper] = settings.bounds.each_ref().map(|bounds| pad(bounds));
-        let estimator =
-            Bounded::new(MonitoredEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
+        let estimator = Bounded::new(PaddedEstimator::new(&settings.estimator, design.estimated())?, &lower, &upper)?;
         let passage = PaddedOperator::new(settings)?;
         let [lower, upper] = settings.within.each_ref().map(|bounds| pad(bounds));
         let model = Within::new(Derived::new(design), &lower, &upper)?;

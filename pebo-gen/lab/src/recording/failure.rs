@@ -44,7 +44,7 @@ impl Replay {
             }
             Failure::Refused(fault) => {
                 let message = format!("the observer cannot be made: {fault}");
-                Diagnostic::error(Code::SimulationFailed, self.span, message)
+                Diagnostic::error(Code::SimulationFailed, self.experiment.span, message)
                     .help("check the gains and bounds under `observer`")
             }
             Failure::Silent { rows: 0, .. } => {
@@ -53,14 +53,14 @@ impl Replay {
             }
             Failure::Silent { rows, faults, refused } => {
                 let message = format!("the observer took no sample of the {rows} rows of {name}");
-                let silent = Diagnostic::error(Code::SimulationFailed, self.span, message)
+                let silent = Diagnostic::error(Code::SimulationFailed, self.experiment.span, message)
                     .help("check the formulas under `recording` and the units of the columns");
                 let reasons = refused.iter().cloned().chain(faults.iter().map(ToString::to_string));
                 reasons.fold(silent, Diagnostic::note)
             }
             Failure::Stopped { line } => {
                 let message = format!("the replay reached its limit at line {line} of {name}");
-                Diagnostic::error(Code::LimitReached, self.span, message)
+                Diagnostic::error(Code::LimitReached, self.experiment.span, message)
                     .help("allow more time, as `--limit 600`, or leave it out")
             }
         }

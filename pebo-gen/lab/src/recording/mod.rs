@@ -6,7 +6,7 @@
 //!
 //! In: an accepted derivation, the model's sections `observer` and `recording`, and a table of samples of any length.
 //! Out: the estimates of x row by row, their errors where states were measured besides, the residuals of the outputs,
-//! and the faults of rows. The observer is that of the [closed loop](super), without the plant.
+//! and the faults of rows. The loop is that of a simulation; here its samples are those of the log.
 //!
 //! Holds: memory does not grow with the recording; the same rows give the same estimates, to the last bit.
 
@@ -15,16 +15,15 @@ mod clock;
 mod failure;
 mod fault;
 mod fit;
-mod layout;
 mod log;
 mod moment;
-mod panels;
 mod piece;
 mod replayed;
 mod residual;
 mod run;
 mod scene;
 mod signals;
+mod stream;
 
 #[cfg(test)]
 mod tests;

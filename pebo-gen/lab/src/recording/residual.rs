@@ -14,9 +14,8 @@ use pebo_cas::{Expr, Symbol};
 use pebo_design::plant::Plant;
 use pebo_design::plant::settings::Late;
 use pebo_design::program::{Interpreter, Program};
-use pebo_design::source::{Diagnostics, Span};
 
-use super::layout::Layout;
+use crate::closed_loop::scope::Estimates;
 
 /// T in samples.
 const MEMORY: f64 = 100.0;
@@ -27,40 +26,37 @@ pub(super) struct Residuals {
     /// Positions in y; true if the rate is given.
     pub(super) outputs: Vec<(usize, bool)>,
     /// Their rates, or their values.
-    formulas: Program,
+    pub(super) formulas: Program,
+}
+
+/// The outputs whose formulas need estimates, outputs and inputs of one moment alone, a late sample being of another, and
+/// their formulas.
+pub(super) fn formulas(
+    plant: &Plant,
+    (hats, late): (&Estimates, Option<&Late<f64>>),
+    numbers: &BTreeMap<Symbol, Expr>,
+) -> (Vec<(usize, bool)>, Vec<Expr>) {
+    let arena = &plant.arena;
+    let is_late = |place: usize| late.is_some_and(|late| late.delays[place] > 0.0);
+    let late = plant.y.iter().enumerate().filter(|(place, _)| is_late(*place)).map(|(_, output)| output.symbol);
+    let states = plant.x.iter().map(|state| state.symbol);
+    let hidden: BTreeSet<Symbol> = states.chain(plant.w.iter().copied()).chain(late).collect();
+    let mut known = numbers.clone();
+    known.extend(hats.iter().map(|(state, hat)| (arena.symbol(state), *hat)));
+    let meaning = |output: &pebo_design::plant::Output| {
+        let (formula, is_rate) = match (output.value, output.rate) {
+            (Some(value), _) => (value, false),
+            (None, rate) => (rate?, true),
+        };
+        let formula = arena.substitute(formula.expr, &known);
+        (!arena.depends_on(formula, &hidden)).then_some((formula, is_rate))
+    };
+    let on_time = plant.y.iter().enumerate().filter(|(place, _)| !is_late(*place));
+    let found = on_time.filter_map(|(place, output)| Some((place, meaning(output)?)));
+    found.map(|(place, (formula, is_rate))| ((place, is_rate), formula)).unzip()
 }
 
 impl Residuals {
-    /// The outputs whose formulas need estimates, outputs and inputs of one moment alone: a late sample is of another.
-    pub(super) fn resolve(
-        plant: &Plant,
-        (layout, late): (&Layout, Option<&Late<f64>>),
-        numbers: &BTreeMap<Symbol, Expr>,
-        (span, problems): (Span, &mut Diagnostics),
-    ) -> Option<Self> {
-        let arena = &plant.arena;
-        let is_late = |place: usize| late.is_some_and(|late| late.delays[place] > 0.0);
-        let late = plant.y.iter().enumerate().filter(|(place, _)| is_late(*place)).map(|(_, output)| output.symbol);
-        let states = plant.x.iter().map(|state| state.symbol);
-        let hidden: BTreeSet<Symbol> = states.chain(plant.w.iter().copied()).chain(late).collect();
-        let mut known = numbers.clone();
-        known.extend(layout.estimated.iter().map(|(state, hat)| (*state, arena.of_symbol(*hat))));
-        let meaning = |output: &pebo_design::plant::Output| {
-            let (formula, is_rate) = match (output.value, output.rate) {
-                (Some(value), _) => (value, false),
-                (None, rate) => (rate?, true),
-            };
-            let formula = arena.substitute(formula.expr, &known);
-            (!arena.depends_on(formula, &hidden)).then_some((formula, is_rate))
-        };
-        let on_time = plant.y.iter().enumerate().filter(|(place, _)| !is_late(*place));
-        let found = on_time.filter_map(|(place, output)| Some((place, meaning(output)?)));
-        let (outputs, formulas): (Vec<_>, Vec<Expr>) =
-            found.map(|(place, (formula, is_rate))| ((place, is_rate), formula)).unzip();
-        let formulas = problems.keep(layout.program(arena, &formulas, span))?;
-        Some(Self { outputs, formulas })
-    }
-
     /// The residuals before the first sample.
     pub(super) fn start(&self) -> ResidualState<'_> {
         let nothing = vec![0.0; self.outputs.len()];

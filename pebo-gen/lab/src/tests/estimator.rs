@@ -70,7 +70,7 @@ fn same(settings: &setup::Estimator, plain: impl Estimator<f64, 3, 2>) {
 }
 
 fn same_of<const N: usize>(settings: &setup::Estimator, mut plain: impl Estimator<f64, 3, 2>) {
-    let mut erased = PaddedEstimator::<N>::new(settings).unwrap();
+    let mut erased = PaddedEstimator::<N>::new(settings, 2).unwrap();
     for k in 0..50 {
         let (factor, known) = data(k);
         erased.advance(&padded_square(&factor), &padded(known.as_slice(), 0.0), 0.1).unwrap();

@@ -1,8 +1,8 @@
 use crate::Overrides;
-use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
 use crate::closed_loop::ode::equation::Standstill;
 use crate::closed_loop::signal::Signal;
+use crate::experiment::layout::time;
 use pebo_cas::{Arena, Expr};
 use pebo_design::model::Model;
 use pebo_design::plant::Scope;

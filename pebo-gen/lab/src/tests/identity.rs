@@ -7,11 +7,13 @@
 //! tested to be of second order, which is its cause.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
-use crate::closed_loop::run::LoopState;
+use crate::closed_loop::simulated::SimulatedPlant;
+use crate::experiment::follow::ExperimentState;
+use crate::experiment::layout::time;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
@@ -70,7 +72,7 @@ impl Loop {
 
     fn scenario(&self, overrides: &Overrides) -> Scenario {
         let mut scenario = Scenario::resolve(&self.model, &self.plant, &self.derivation, overrides).unwrap();
-        scenario.design.settings.rebase = None;
+        scenario.experiment.design.settings.rebase = None;
         scenario
     }
 
@@ -107,8 +109,8 @@ impl Loop {
         let own = self.scenario(&Overrides::default());
         let step = own.timing.step.max(own.timing.at(own.samples()) / crate::timing::real(samples));
         let scenario = self.scenario(&Overrides { step: Some(step), ..Overrides::default() });
-        let (plant, arena, layout) = (&self.plant, &self.plant.arena, &scenario.layout);
-        let (extension, moves, start) = self.extension(&scenario.design.settings.chi_0);
+        let (plant, arena, layout) = (&self.plant, &self.plant.arena, &scenario.experiment.layout);
+        let (extension, moves, start) = self.extension(&scenario.experiment.design.settings.chi_0);
         let known = plant.rates();
         let outputs = plant.y.iter().map(|output| output.symbol).filter(|output| known.contains_key(output));
         let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).chain(outputs).collect();
@@ -119,7 +121,10 @@ impl Loop {
         let state = 1..=states.len() + extension.len();
         let state = *state.start()..state.end() + 1;
 
-        let mut machine = LoopState::start(&scenario).unwrap();
+        let mut progress = |_| ControlFlow::Continue(());
+        let mut plant_state = SimulatedPlant::new(&scenario, &mut progress);
+        let mut machine = ExperimentState::start(&scenario.experiment).unwrap();
+        machine.step(&mut plant_state).unwrap();
         let mut table = vec![0.0; symbols.len()];
         for (state, place) in states.iter().zip(1..) {
             let position = layout.symbols.iter().position(|symbol| symbol == state).unwrap();
@@ -143,7 +148,6 @@ impl Loop {
         let mut largest: Vec<f64> = z.iter().map(|z| z.abs()).collect();
         let mut worst = 0.0_f64;
         for sample in 1..=scenario.samples() {
-            machine.control().unwrap();
             table[inputs.clone()].copy_from_slice(&machine.table[layout.u.clone()]);
             for (to, from) in (inputs.end..symbols.len()).zip(layout.signals.clone()) {
                 table[to] = machine.table[from];
@@ -151,7 +155,7 @@ impl Loop {
             let (from, to) = (scenario.timing.at(sample - 1), scenario.timing.at(sample));
             flow.advance(&mut table, from, to).unwrap();
             table[0] = to;
-            machine.advance(sample).unwrap();
+            assert!(machine.step(&mut plant_state).unwrap());
             z_of.run(&table, &mut z);
             for ((z, other), largest) in z.iter().zip(sum(&table[states.len() + 1..state.end])).zip(&mut largest) {
                 *largest = largest.max(z.abs());
@@ -168,18 +172,21 @@ impl Loop {
         let refine = |steps: u64| step / crate::timing::real(steps);
         let overrides = Overrides { step: Some(refine(refined)), ..Overrides::default() };
         let scenario = self.scenario(&overrides);
-        let (plant, layout) = (&self.plant, &scenario.layout);
+        let (plant, layout) = (&self.plant, &scenario.experiment.layout);
         let symbols = &layout.symbols[..layout.state.end];
         let z_of = lower(&plant.arena, symbols, &self.at_values(&plant.transform())).unwrap();
         let mut z_of = Interpreter::new(&z_of);
-        let mut machine = LoopState::start(&scenario).unwrap();
+        let mut progress = |_| ControlFlow::Continue(());
+        let mut plant_state = SimulatedPlant::new(&scenario, &mut progress);
+        let mut machine = ExperimentState::start(&scenario.experiment).unwrap();
+        machine.step(&mut plant_state).unwrap();
         let mut z = vec![0.0; plant.phi.len()];
         z_of.run(&machine.table[..symbols.len()], &mut z);
-        let theta: Vec<f64> = z.iter().zip(&scenario.design.settings.chi_0).map(|(z, chi)| z - chi).collect();
+        let theta: Vec<f64> =
+            z.iter().zip(&scenario.experiment.design.settings.chi_0).map(|(z, chi)| z - chi).collect();
         let mut worst = vec![(0.0_f64, 0.0_f64); z.len()];
-        for sample in 1..=SAMPLES * refined {
-            machine.control().unwrap();
-            machine.advance(sample).unwrap();
+        for _ in 1..=SAMPLES * refined {
+            assert!(machine.step(&mut plant_state).unwrap());
             z_of.run(&machine.table[..symbols.len()], &mut z);
             for ((z, other), (off, scale)) in z.iter().zip(machine.driver.observer.coordinates(&theta)).zip(&mut worst)
             {

@@ -1,8 +1,8 @@
 //! Plants with signs in their rates, beside their closed forms.
 
-use crate::closed_loop::layout::time;
 use crate::closed_loop::ode::Flow;
 use crate::closed_loop::ode::switching::Switches;
+use crate::experiment::layout::time;
 use crate::{Failure, Overrides};
 use pebo_cas::Function::Sign;
 use pebo_cas::{Arena, Expr};

@@ -17,8 +17,8 @@ use pebo_cas::Expr;
 use pebo_design::model::{Baseline, Entry};
 use pebo_design::source::Diagnostics;
 
-use super::layout::baseline_estimates;
 use super::scope::{Estimates, Names};
+use crate::experiment::layout::baseline_estimates;
 use equations::ResolvedEquations;
 
 pub(crate) use sampled::{Follower, NamedBaseline, StartError};

@@ -7,7 +7,7 @@ use std::fmt;
 
 use pebo_runtime::nalgebra::{SMatrix, SVector};
 
-use crate::closed_loop::scope::{Names, Sight, View};
+use crate::closed_loop::scope::{Names, Sight, View, number};
 use crate::observe::design::program;
 use crate::observe::sizes::{LARGEST, pad};
 use crate::settings::Value;
@@ -100,11 +100,6 @@ impl NamedBaseline {
             _ => Box::new(PaddedFollower::<LARGEST>::new(self, x, y)),
         }
     }
-}
-
-/// The number of a name among the entries.
-fn number(entries: &[Entry<Spanned<Decimal>>], name: &str) -> Option<f64> {
-    entries.iter().find(|entry| entry.name.value == name).map(|entry| entry.value.value.to_f64())
 }
 
 fn kalman(

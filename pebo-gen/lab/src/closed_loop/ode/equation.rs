@@ -13,8 +13,8 @@ use pebo_runtime::nalgebra::{SMatrix, SVector};
 use pebo_design::program::Interpreter;
 
 use super::switching::SwitchState;
-use crate::closed_loop::layout::TIME;
 use crate::closed_loop::signal::SignalCursor;
+use crate::experiment::layout::TIME;
 
 /// The relative tolerance. Errors of estimates matter down to a millionth; the truth has to be much better than that.
 pub(crate) const RELATIVE: f64 = 1e-10;

@@ -14,8 +14,8 @@ use std::ops::Range;
 
 use pebo_design::program::{Interpreter, Program};
 
-use super::layout::TIME;
 use super::signal::Signal;
+use crate::experiment::layout::TIME;
 use crate::timing::real;
 use equation::{ABSOLUTE, Equation, RELATIVE, Rates, SHORTEST, Solver, Standstill};
 use explicit::ExplicitMethod;

@@ -19,7 +19,7 @@ use pebo_cas::{Arena, Expr, Function, Node, Symbol};
 use pebo_design::program::{Interpreter, Program};
 use pebo_design::source::{Diagnostic, Span};
 
-use crate::closed_loop::layout::{Layout, time};
+use crate::experiment::layout::{Layout, time};
 use crate::observe::design::program;
 
 /// Rounds of the iteration for simultaneous sliding: each switch is solved for with the others held.

@@ -329,4 +329,7 @@ fn an_output_with_an_input_in_it_is_compared_with_the_input_of_its_own_row() {
         let scored = &replayed.summary.estimates[0];
         assert!(scored.score.rms < 3.0 * scored.expected.expect("an error"), "{text}");
     }
+    // It begins where both are known.
+    let (replayed, estimates) = replay(cell, &table(0).replacen(",0,0.8\n", ",,0.8\n", 1)).expect("a replay");
+    assert!(replayed.inputs_at_once && estimates.lines().nth(1) == Some("1,,,"), "{estimates}");
 }
