@@ -17,7 +17,6 @@ const CIRCLES: &[(&str, usize)] = &[
     ("analysis/advice/remarks.rs", 4),
     ("model/formula/parser.rs", 2),
     ("model/rust/functions.rs", 2),
-    ("plant/plant.rs", 13),
     ("program/lower.rs", 4),
 ];
 
