@@ -5,7 +5,7 @@ use crate::source::{Code, Diagnostic};
 use pebo_cas::domain::zero::MOST_POINTS;
 use pebo_cas::{Domain, Expr, Relation};
 
-use super::advice::remarks::Remarks;
+use super::advice::remark::Remarks;
 use super::conditions::{Conditions, DomainCondition};
 use super::design::{Cascade, Claim, Class, Derivation, Outcome, Regression, Verdict};
 use super::left_inverse::checking::at_phi;

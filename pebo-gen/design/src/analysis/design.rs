@@ -9,7 +9,7 @@ use pebo_cas::domain::cells::Side;
 use pebo_cas::forms::tidy::code_conditions;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
-use super::advice::remarks::Remarks;
+use super::advice::remark::Remarks;
 
 /// The verdict on one claim.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

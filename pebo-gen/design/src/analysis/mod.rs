@@ -44,9 +44,7 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-pub use advice::drift::Drift;
-pub use advice::equilibrium::{Equilibrium, OperatingPoint};
-pub use advice::remarks::Remarks;
+pub use advice::remark::{Drift, Equilibrium, OperatingPoint, Remarks};
 pub use design::{
     BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Determined, Excitation, Fundamental, Gram,
     Identifiability, LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still, Trajectories,

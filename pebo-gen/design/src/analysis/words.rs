@@ -6,7 +6,7 @@
 
 use crate::plant::{Plant, TransformOrigin};
 
-use super::advice::equilibrium::Equilibrium;
+use super::advice::remark::Equilibrium;
 use super::design::{Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, UnusedReason, Verdict};
 
 impl Verdict {

@@ -8,7 +8,9 @@ use crate::source::Diagnostic;
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Expr, Relation};
 
-use super::{Assumption, Scope, lower};
+use super::formula::lower;
+use super::parts::Assumption;
+use super::scope::Scope;
 
 /// Adds the domain conditions of the formula.
 pub(super) fn collect(

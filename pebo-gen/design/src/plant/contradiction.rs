@@ -13,7 +13,7 @@ use pebo_cas::number::interval::Precision;
 use pebo_cas::tower::Field;
 use pebo_cas::{Arena, Domain, Expr, Node, Rational, Relation, Symbol};
 
-use super::plant::{Assumption, Parameter};
+use super::parts::{Assumption, Parameter};
 
 /// Precision of the order of bounds; the reported comparison is decided by an enclosure as fine as necessary.
 const PRECISION: u32 = 64;

@@ -9,7 +9,7 @@ use crate::model::{self, Model};
 use crate::source::{Code, Diagnostic, Diagnostics};
 use pebo_cas::{Arena, Expr, Symbol};
 
-use super::plant::{Assumption, Formula, Parameter};
+use super::parts::{Assumption, Formula, Parameter};
 
 /// The states with the values at which they start.
 pub(super) fn starts(

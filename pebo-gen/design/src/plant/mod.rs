@@ -14,6 +14,7 @@ mod contradiction;
 mod formula;
 mod known;
 mod own;
+mod parts;
 mod period;
 #[allow(clippy::module_inception)]
 mod plant;
@@ -29,7 +30,8 @@ mod values;
 pub use crate::model::CascadeClass;
 pub use class::{Class, Proposal};
 pub use formula::lower;
-pub use plant::{Assumption, Formula, Noisier, Output, Parameter, Plant, RelationForm, State, TransformOrigin};
+pub use parts::{Assumption, Formula, Output, Parameter, State};
+pub use plant::{Noisier, Plant, RelationForm, TransformOrigin};
 pub use scope::Scope;
 pub use settings::Settings;
 

@@ -5,7 +5,7 @@
 use crate::source::{Code, Diagnostic};
 use pebo_cas::{Arena, Domain, Relation};
 
-use super::plant::Formula;
+use super::parts::Formula;
 
 /// Refuses a period that is not provably positive by the values and assumptions.
 pub(super) fn positive(arena: &Arena, domain: &Domain, period: Formula) -> Result<(), Diagnostic> {

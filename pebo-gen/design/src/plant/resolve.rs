@@ -13,7 +13,8 @@ use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
 
 use super::formula::{exact, lower};
 use super::own::{Own, letter_of_unknowns};
-use super::plant::{Assumption, Formula, Output, Parameter, Plant, RelationForm, State, TransformOrigin, assumed};
+use super::parts::{Assumption, Formula, Output, Parameter, State, assumed, confined};
+use super::plant::{Plant, RelationForm, TransformOrigin};
 use super::scope::Scope;
 use super::{class, start, terms, values};
 
@@ -216,7 +217,7 @@ fn explicit(
     (x, y): (&[Symbol], &[Symbol]),
     problems: &mut Diagnostics,
     component: impl Fn(&model::Formula) -> Result<Formula, Diagnostic>,
-) -> class::Expansion {
+) -> class::Expansion<Option<class::Class>> {
     let states = x
         .iter()
         .zip(&model.f_x)
@@ -250,28 +251,6 @@ fn parameter(arena: &Arena, entry: &Entry<Option<Spanned<model::Decimal>>>) -> R
 
 fn resolved(arena: &Arena, scope: &Scope, formula: &model::Formula) -> Result<Formula, Diagnostic> {
     Ok(Formula { expr: lower(arena, scope, formula)?, span: formula.span })
-}
-
-/// The formula, if it depends only on the allowed symbols.
-pub(super) fn confined(
-    arena: &Arena,
-    expr: Expr,
-    span: Span,
-    allowed: &BTreeSet<Symbol>,
-    place: &str,
-) -> Result<Formula, Diagnostic> {
-    match arena.symbols_of(&[expr]).iter().find(|s| !allowed.contains(s)) {
-        None => Ok(Formula { expr, span }),
-        Some(stray) => {
-            let names: Vec<String> = allowed.iter().map(|s| arena.name(*s)).collect();
-            Err(Diagnostic::error(
-                Code::MisplacedName,
-                span,
-                format!("{place} cannot depend on `{}`", arena.name(*stray)),
-            )
-            .help(format!("use only {}", names.join(", "))))
-        }
-    }
 }
 
 /// The assumptions that are no truths about numbers; those that exclude one another are reported.

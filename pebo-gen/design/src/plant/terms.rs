@@ -8,7 +8,7 @@ use crate::source::Span;
 use pebo_cas::{Arena, Expr, Symbol};
 
 use super::formula::lower;
-use super::plant::Formula;
+use super::parts::Formula;
 use super::scope::Scope;
 
 /// A formula of more summands is pointed at as a whole.

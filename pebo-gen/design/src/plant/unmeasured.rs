@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use pebo_cas::{Expr, Symbol};
 
-use super::plant::{Output, Plant, State};
+use super::parts::{Output, State};
+use super::plant::Plant;
 
 impl Plant {
     /// The same plant where a state is an output.

@@ -8,8 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::source::Diagnostics;
 use pebo_cas::{Arena, Expr, Symbol};
 
-use super::plant::{Formula, Output, State};
-use super::resolve::confined;
+use super::parts::{Formula, Output, State, confined};
 
 /// Refuses a value that depends on the output itself, or on a symbol that is not allowed.
 pub(super) fn confine(arena: &Arena, outputs: &[Output], allowed: &BTreeSet<Symbol>, problems: &mut Diagnostics) {

@@ -3,9 +3,9 @@
 //! In: plant, derivation and programs. Out: lines of documentation. No date, no path: the same model
 //! gives the same text.
 
-use super::Module;
 use super::abbreviation::Abbreviations;
 use super::formulas::{self, equation, is_linear, named, text};
+use super::inputs::Module;
 use super::prose::{self, section, sentence};
 use crate::emit::accuracy;
 use crate::emit::definition::{

@@ -1,6 +1,4 @@
 //! The module as tokens: definitions and their programs in, items out.
-//!
-//! One thing with `document`: the module writes its documentation, which describes the module.
 
 pub(crate) mod abbreviation;
 pub(crate) mod check;
@@ -9,6 +7,7 @@ mod describe;
 pub(super) mod document;
 mod formulas;
 mod function;
+mod inputs;
 pub(crate) mod paper;
 mod parameters;
 pub(in crate::emit) mod permission;
@@ -22,43 +21,20 @@ use std::collections::BTreeMap;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
-use super::accuracy::Accuracy;
-use super::definition::{Argument, Definitions, INSTANTS, VELOCITY};
+use super::definition::{Argument, INSTANTS, VELOCITY};
 use super::error::EmitError;
 use super::expression::{self, Body, Piece, ident, render};
-use super::literal::{Scalar, literal, whole};
+use super::literal::{literal, whole};
 use super::names::{Names, camel};
 use super::table::Tables;
-use abbreviation::Abbreviations;
 use describe::describe;
+pub(super) use inputs::Module;
 use pebo_cas::{Expr, Rational, Symbol};
-use pebo_design::analysis::{Class, Derivation, RegressionKind, Sign};
-use pebo_design::plant::{Plant, Settings};
-use pebo_design::program::{Constant, Program, StagedPrograms};
+use pebo_design::analysis::{Class, RegressionKind};
+use pebo_design::program::{Constant, Program};
 
 /// The `INTERFACE` of the runtime library that emitted code is written for: it fails to compile against another.
 const INTERFACE: u32 = 2;
-
-/// The inputs of the items.
-pub(super) struct Module<'a> {
-    pub(super) plant: &'a Plant,
-    pub(super) derivation: &'a Derivation,
-    pub(super) definitions: &'a Definitions<'a>,
-    pub(super) staged: &'a StagedPrograms,
-    /// The conditions on the parameters.
-    pub(super) asked: &'a [(Expr, Sign)],
-    /// The settings of the observer, if the model has them.
-    pub(super) settings: Option<&'a Settings<Rational>>,
-    /// From the parameters to the values in these conditions.
-    pub(super) checked: Program,
-    pub(super) scalar: Scalar,
-    /// The model may be re-based.
-    pub(super) rebase: bool,
-    /// The digits that the functions keep.
-    pub(super) accuracy: &'a Accuracy,
-    /// Names for parts of the formulas in the documentation.
-    pub(super) abbreviations: &'a Abbreviations,
-}
 
 /// The names of the module.
 pub(super) struct Scope {

@@ -2,21 +2,11 @@
 //! 2015, remark R5).
 
 use crate::plant::Plant;
+use pebo_cas::Expr;
 use pebo_cas::domain::zero::is_zero;
-use pebo_cas::{Expr, Symbol};
 
+use super::remark::Drift;
 use crate::analysis::design::{Class, Derivation, Regression, RegressionKind, Verdict};
-
-/// The components of the extension that a constant bias makes run away.
-#[derive(Clone, Debug)]
-pub struct Drift {
-    /// Components whose rate is free of the extension and not provably zero.
-    pub integrators: Vec<Symbol>,
-    /// Those of them that the known start fixes and no output corrects.
-    pub uncorrected: Vec<Symbol>,
-    /// The outputs and inputs that they integrate.
-    pub integrated: Vec<Symbol>,
-}
 
 impl Drift {
     /// The open integrators of an extension; none without a proved cascade.
@@ -83,6 +73,7 @@ mod tests {
     use super::*;
     use crate::model::Model;
     use crate::source::Source;
+    use pebo_cas::Symbol;
 
     /// Integrators and their integrands.
     fn of(lines: &str) -> Option<String> {

@@ -8,13 +8,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plant::Plant;
-use pebo_cas::domain::cells::Side;
 use pebo_cas::domain::zero::{Answer, decide, is_zero};
 use pebo_cas::forms::oriented::Orientation;
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Arena, Domain, Expr, Relation, Symbol};
 
+use super::remark::{Equilibrium, OperatingPoint};
 use crate::analysis::design::{Cascade, Derivation, Verdict};
 use pebo_cas::forms::tidy::{operations, shortest_oriented};
 use pebo_cas::solve::elimination::Elimination;
@@ -30,33 +30,6 @@ const MOST_TIDIED: usize = 40;
 
 /// Said where equilibria were found, but none in the domain of the observer.
 const NONE_WITHIN: &str = "no equilibrium that was looked at lies within the assumptions and conditions";
-
-/// The equilibrium of a plant.
-#[derive(Clone, Debug)]
-pub enum Equilibrium {
-    /// An equilibrium: proved.
-    At(OperatingPoint),
-    /// No equilibrium, since this state or output always moves: proved.
-    Nowhere(Symbol),
-    /// Undecided, for this reason.
-    Undecided(String),
-}
-
-/// Values at which every rate vanishes.
-#[derive(Clone, Debug)]
-pub struct OperatingPoint {
-    /// Determined symbols as functions of the free ones.
-    pub values: Vec<(Symbol, Expr)>,
-    /// Signs that the free ones have there: in other cells of the domain the values are others, or none.
-    pub sides: Vec<(Expr, Side)>,
-    /// True if there are no other equilibria: they are these, at all values of the free symbols.
-    pub complete: bool,
-    /// True if z' vanishes there too: `h`, of the generalised cascade `Lambda z + h`.
-    pub still: bool,
-    /// The rank of `[f; h_i]` at almost every point, the same for all i; none if undecided. At the operating point it
-    /// is 0 if z' vanishes.
-    pub rank: Option<usize>,
-}
 
 impl Equilibrium {
     /// Looks for the operating points of a plant; none without a proved cascade.

@@ -3,6 +3,7 @@
 //! In: a plant and its derivation. Out: an operating point, the integrators that a bias makes grow with a remedy, and
 //! whether the observer may be re-based; each computed on first use.
 
-pub(super) mod drift;
-pub(super) mod equilibrium;
-pub(super) mod remarks;
+mod drift;
+mod equilibrium;
+pub(super) mod remark;
+mod remarks;

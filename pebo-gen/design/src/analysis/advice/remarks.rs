@@ -1,27 +1,16 @@
 //! Remarks for the user of an observer, on which no claim depends: equilibrium, drift, and restarts of the extension.
 //!
 //! Computed once, on first use: callers that print no remarks, as the macro, do not pay for them.
-//!
-//! One thing with `design`, `drift` and `equilibrium`: a derivation keeps the remarks on itself, which are made of it.
 
-use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use crate::plant::Plant;
 use pebo_cas::domain::zero::is_zero;
 use pebo_cas::{Expr, Symbol};
 
-use super::drift::{Drift, rebase_residuals};
-use super::equilibrium::Equilibrium;
+use super::drift::rebase_residuals;
+use super::remark::{Drift, Equilibrium};
 use crate::analysis::design::Derivation;
-
-/// The remarks computed so far.
-#[derive(Debug, Default)]
-pub struct Remarks {
-    operating_point: OnceCell<Option<Equilibrium>>,
-    drift: OnceCell<Option<Drift>>,
-    rebase: OnceCell<bool>,
-}
 
 impl Derivation {
     /// The equilibrium of the plant, which must be the one of this derivation; none without a proved cascade.

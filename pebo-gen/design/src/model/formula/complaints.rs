@@ -1,7 +1,7 @@
 //! The parser's diagnostics for a text that is no formula.
 
 use super::lexer::{Kind, Token};
-use super::parser::Parser;
+use super::state::Parser;
 use super::{DEPTH_LIMIT, foreign};
 use crate::source::{Code, Diagnostic, Span, listed, nearest, quoted};
 use pebo_cas::Function;

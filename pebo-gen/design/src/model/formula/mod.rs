@@ -27,6 +27,7 @@ mod display;
 mod foreign;
 mod lexer;
 mod parser;
+mod state;
 mod sum;
 mod table;
 
@@ -42,8 +43,9 @@ pub(super) use bounds::SizedFormula;
 pub use bounds::{DEPTH_LIMIT, EXPONENT_LIMIT, LENGTH_LIMIT};
 pub use decimal::{Decimal, DecimalParts};
 pub(super) use lexer::greek;
-pub use parser::{Estimates, Permitted, parse_comparison, parse_formula};
+pub use parser::{parse_comparison, parse_formula};
 pub use spans::SpanMap;
+pub use state::{Estimates, Permitted};
 pub use table::{Interpolation, Table};
 
 /// The constant of a circle: this name, unless the model declares it.

@@ -1,39 +1,14 @@
 //! Tokens to formulas, by precedence climbing.
-//!
-//! One thing with `complaints`: its methods word what the parser finds, of the parser's own state.
 
 use std::sync::Arc;
 
 use super::bounds::SizedFormula;
 use super::lexer::{Kind, Lexer, Token};
+use super::state::{Estimates, Parser, Permitted};
 use super::sum::sum;
 use super::{Comparison, DEPTH_LIMIT, Decimal, Formula, LENGTH_LIMIT, Operator, SpanMap, Table, Term, complaints};
 use crate::source::{Code, Diagnostic, Span};
 use pebo_cas::Function;
-
-/// Permission for `hat(x)` in a formula.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Estimates {
-    /// In the plant and its observer there are no estimates.
-    Refused,
-    /// In a simulation's control law, definitions, baselines and panels there are.
-    Allowed,
-}
-
-/// What a formula may use beside names and functions.
-#[derive(Clone, Copy, Debug)]
-pub struct Permitted<'a> {
-    /// Estimates.
-    pub estimates: Estimates,
-    /// The tables that it may call.
-    pub tables: &'a [Arc<Table>],
-}
-
-impl From<Estimates> for Permitted<'_> {
-    fn from(estimates: Estimates) -> Self {
-        Self { estimates, tables: &[] }
-    }
-}
 
 /// Reads `text` as one formula.
 pub fn parse_formula<'a>(
@@ -78,18 +53,6 @@ const SUM: u8 = 1;
 const PRODUCT: u8 = 2;
 const SIGN: u8 = 3;
 const POWER: u8 = 4;
-
-/// The state of a parse. Its diagnostics are worded in [`complaints`], out of the way of the recursion,
-/// whose frames on the stack stay small.
-pub(super) struct Parser<'a> {
-    pub(super) lexer: Lexer<'a>,
-    permitted: Permitted<'a>,
-    /// The token to be read next, and the one before it.
-    pub(super) next: Token,
-    pub(super) last: Token,
-    /// Calls of `expression` under way.
-    depth: usize,
-}
 
 impl<'a> Parser<'a> {
     fn new(text: &'a str, spans: &'a SpanMap, permitted: Permitted<'a>) -> Result<Self, Diagnostic> {

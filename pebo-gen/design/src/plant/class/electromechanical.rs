@@ -13,14 +13,14 @@ use std::collections::BTreeSet;
 
 use crate::model::{Electromechanical as WrittenClass, Formula as WrittenFormula, Model};
 use crate::plant::Matrix;
-use crate::plant::plant::{Assumption, Formula, Output, State};
+use crate::plant::parts::{Assumption, Formula, Output, State};
 use crate::source::{Code, Diagnostic, Diagnostics, Span, listed, nearest};
 use pebo_cas::number::rational::half;
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Expr, Relation, Symbol};
 
+use super::context::{ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 use super::shape::{self, Size};
-use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 
 /// Coils that move one mass.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ pub(super) fn expand(
     written: &WrittenClass,
     names: &Names<'_>,
     problems: &mut Diagnostics,
-) -> Result<Expansion, Stop> {
+) -> Result<Expansion<Electromechanical>, Stop> {
     let (arena, facts) = (context.arena, &context.domain.facts);
     let (Some(l), Some(speed_name)) = (&written.inductance, &written.speed) else { return Err(Stop::Reported) };
     let speed = speed(context, names, speed_name)?;
@@ -120,7 +120,7 @@ pub(super) fn expand(
         phi: phi.collect(),
         proposal: Proposal::default(),
         conditions,
-        class: Some(Class::Electromechanical(Electromechanical { inductance, magnets })),
+        class: Electromechanical { inductance, magnets },
     })
 }
 

@@ -5,7 +5,7 @@
 //! problem is to solve `A11 + T2 A21 = 0`: the rows of A11 have to be combinations of those of A21 (Ortega et al. 2015,
 //! Section 4, eq. 19).
 
-use crate::model::Lti;
+use crate::model::{Lti, Model};
 use crate::plant::Matrix;
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::linear::solve_each;
@@ -13,9 +13,9 @@ use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Relation, Symbol};
 
+use super::context::{ClassContext, Expansion, Names, Proposal, Stop, unresolved};
 use super::shape::{self, Size};
-use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, unresolved};
-use crate::plant::plant::{Assumption, Formula, Output, State};
+use crate::plant::parts::{Assumption, Formula, Output, State};
 
 /// A linear plant.
 #[derive(Clone, Debug)]
@@ -42,12 +42,21 @@ pub struct Linear {
 /// goes through all of them.
 const MOST_BY_MINORS: usize = 6;
 
+/// The number of components of the transform: with one of the author's there may be more of them than states.
+pub(super) fn components(written: &Lti, model: &Model) -> usize {
+    match &written.t1 {
+        Some(t1) if t1.depth == 2 => t1.rows.len(),
+        Some(t1) if t1.depth == 1 && model.x.len() == 1 => t1.rows[0].len(),
+        _ => model.x.len(),
+    }
+}
+
 pub(super) fn expand(
     context: &ClassContext<'_>,
     written: &Lti,
     names: &Names<'_>,
     problems: &mut Diagnostics,
-) -> Result<Expansion, Stop> {
+) -> Result<Expansion<Linear>, Stop> {
     let arena = context.arena;
     if let (None, Some(alone)) = (&written.t1, &written.t2) {
         return Err(Diagnostic::error(Code::MissingKey, alone.span, "T2 is given without T1")
@@ -65,7 +74,7 @@ pub(super) fn expand(
     let a22 = read("A22", &written.a22, (ny, ny), "outputs x outputs");
     let b1 = read("B1", &written.b1, (nx, nu), "states x inputs");
     let b2 = read("B2", &written.b2, (ny, nu), "outputs x inputs");
-    let nz = super::components(context.model);
+    let nz = components(written, context.model);
     let t1 = read("T1", &written.t1, (nz, nx), "components x states");
     let t2 = read("T2", &written.t2, (nz, ny), "components x outputs");
     let (Some(mut a11), Some(a12), Some(mut a21), Some(a22), Some(b1), Some(b2), Some(t1), Some(t2)) =
@@ -145,7 +154,7 @@ pub(super) fn expand(
         phi: phi.collect(),
         proposal,
         conditions,
-        class: Some(Class::Linear(Linear { a11, a21, t1, t2, given, special, unsolved, span: first.span })),
+        class: Linear { a11, a21, t1, t2, given, special, unsolved, span: first.span },
     })
 }
 

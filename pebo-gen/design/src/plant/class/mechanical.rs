@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 use crate::model::{Formula as WrittenFormula, Mechanical as WrittenClass};
 use crate::plant::Matrix;
-use crate::plant::plant::{Assumption, Formula, Output, State};
+use crate::plant::parts::{Assumption, Formula, Output, State};
 use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::domain::zero::{Answer, decide, refute};
 use pebo_cas::forms::oriented::oriented;
@@ -23,8 +23,8 @@ use pebo_cas::number::rational::half;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 
+use super::context::{ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 use super::shape::{self, Size};
-use super::{Class, ClassContext, Expansion, Names, Proposal, Stop, singular, unresolved};
 
 /// A mechanical plant.
 #[derive(Clone, Debug)]
@@ -90,7 +90,7 @@ pub(super) fn expand(
     written: &WrittenClass,
     names: &Names<'_>,
     problems: &mut Diagnostics,
-) -> Result<Expansion, Stop> {
+) -> Result<Expansion<Option<Mechanical>>, Stop> {
     let (arena, facts, n) = (context.arena, &context.domain.facts, names.y.len());
     let Some(m) = &written.m else { return Err(Stop::Reported) };
     // Without a frame the momenta themselves: any will do to write the equations.
@@ -170,19 +170,17 @@ pub(super) fn expand(
         proposal: if given { proposal } else { Proposal::default() },
         conditions,
         // The class knows its own frame alone.
-        class: given.then(|| {
-            Class::Mechanical(Mechanical {
-                q: names.y.to_vec(),
-                h: transposed.apply(arena, &external),
-                inertia,
-                frame,
-                inverse_frame,
-                inverse_metric,
-                velocities,
-                energy,
-                in_velocities,
-                span: t.span,
-            })
+        class: given.then(|| Mechanical {
+            q: names.y.to_vec(),
+            h: transposed.apply(arena, &external),
+            inertia,
+            frame,
+            inverse_frame,
+            inverse_metric,
+            velocities,
+            energy,
+            in_velocities,
+            span: t.span,
         }),
     })
 }

@@ -11,7 +11,7 @@ use crate::source::{Code, Diagnostic, Diagnostics, Span};
 use pebo_cas::Symbol;
 use pebo_cas::domain::zero::{Answer, decide};
 
-use super::ClassContext;
+use super::context::{ClassContext, unresolved};
 
 /// The size of a matrix, and the names of its counts.
 #[derive(Clone, Copy)]
@@ -97,7 +97,7 @@ impl ClassContext<'_> {
                                 "write the same formula in both places: {name} is the matrix of an energy"
                             )));
                     }
-                    Answer::Open(obstacle) => return Err(super::unresolved(name, span, &obstacle)),
+                    Answer::Open(obstacle) => return Err(unresolved(name, span, &obstacle)),
                 }
             }
         }
