@@ -363,15 +363,23 @@ impl Identifiability {
     }
 }
 
+/// Courses of the inputs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum InputCourses {
+    /// Constant inputs: of others, some may keep the plant where it hides unknowns.
+    Constant,
+    /// All: none of them does, but on listed trajectories.
+    All,
+}
+
 /// The motion that makes unknowns identifiable which one instant does not identify.
 #[derive(Clone, Debug)]
 pub struct Trajectories {
     /// True if no input has to move: with all of them constant the rank over time is full on almost every trajectory.
     /// None if undecided.
     pub by_itself: Option<bool>,
-    /// True if it is so for every course of the inputs: none of them keeps the plant where it hides unknowns, but on
-    /// listed trajectories.
-    pub under_any_inputs: bool,
+    /// The courses of the inputs with which it is so.
+    pub courses: InputCourses,
     /// True if nothing has to move: there are equilibria outside the listed trajectories, and the rank is full at almost
     /// all of these.
     pub at_rest: bool,

@@ -3,7 +3,9 @@
 //! In: claims, each on a cell on which the unknowns are identified over time or at every instant. Out: the weakest of
 //! them for the whole domain, with the trajectories of each cell on which not all unknowns are identifiable.
 
-use crate::analysis::design::{BlindTrajectory, Claim, Excitation, Identifiability, Trajectories, Verdict};
+use crate::analysis::design::{
+    BlindTrajectory, Claim, Excitation, Identifiability, InputCourses, Trajectories, Verdict,
+};
 use crate::plant::Plant;
 use pebo_cas::Expr;
 use pebo_cas::domain::cells::{Side, wall_between};
@@ -98,10 +100,9 @@ impl Joined {
     pub(super) fn claim(mut self, plant: &Plant, cells: usize) -> Claim<Identifiability> {
         self.add_cells(plant, cells);
         let Self { constants, parameters, by_itself, blind, .. } = self;
-        // Of cells that hide unknowns, and of the paths between cells, this was not worked out.
-        let unknown =
-            Trajectories { by_itself, under_any_inputs: false, at_rest: false, blind, everywhere: false, parameters };
-        let trajectories = unknown;
+        // Of cells that hide unknowns, and of the paths between cells, other courses were not worked out.
+        let courses = InputCourses::Constant;
+        let trajectories = Trajectories { by_itself, courses, at_rest: false, blind, everywhere: false, parameters };
         Claim {
             verdict: Verdict::Proved,
             result: Some(Identifiability {

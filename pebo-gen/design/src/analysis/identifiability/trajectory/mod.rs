@@ -21,7 +21,7 @@ pub(in crate::analysis) mod words;
 
 use std::collections::BTreeSet;
 
-use crate::analysis::design::{Still, Trajectories};
+use crate::analysis::design::{InputCourses, Still, Trajectories};
 use pebo_cas::tower::Obstacle;
 use pebo_cas::{Domain, Expr, Relation, Symbol};
 
@@ -63,7 +63,7 @@ pub(super) fn of(problem: &ObservabilityProblem<'_>) -> (Trajectories, Vec<Expr>
         (_, Some(true)) => list.is_complete = false,
         _ => problem.under_excitation(constant.as_ref().ok(), observed, &mut list),
     }
-    let under_any_inputs = match &constant {
+    let is_all = match &constant {
         _ if inputs == Still::Nothing => true,
         Ok(_) if by_itself == Some(true) => {
             plant.arena.budget().share(SHARE_OF_REMARKS, || problem.holds_under_any_inputs(&mut list)).unwrap_or(false)
@@ -72,7 +72,8 @@ pub(super) fn of(problem: &ObservabilityProblem<'_>) -> (Trajectories, Vec<Expr>
     };
     let everywhere = list.is_complete;
     let blind = list.statements();
-    (Trajectories { by_itself, under_any_inputs, at_rest: false, blind, everywhere, parameters }, constants)
+    let courses = if is_all { InputCourses::All } else { InputCourses::Constant };
+    (Trajectories { by_itself, courses, at_rest: false, blind, everywhere, parameters }, constants)
 }
 
 /// A domain on which these are not zero, and these are positive.

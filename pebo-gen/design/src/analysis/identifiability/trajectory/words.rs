@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::analysis::design::{BlindTrajectory, Determined, Still, Trajectories, TrajectoryCondition};
+use crate::analysis::design::{BlindTrajectory, Determined, InputCourses, Still, Trajectories, TrajectoryCondition};
 use crate::analysis::identifiability::flow::varies;
 use crate::plant::Plant;
 use crate::source::{counted, listed};
@@ -24,10 +24,10 @@ impl Trajectories {
         let are_points = self.blind.iter().all(|blind| !blind.is_decided() && blind.is_at_rest());
         let first = match (self.by_itself, self.at_rest, self.everywhere) {
             _ if self.is_divided() => self.of_cells(),
-            (Some(true), true, true) if !self.under_any_inputs && self.blind.is_empty() => {
+            (Some(true), true, true) if self.courses == InputCourses::Constant && self.blind.is_empty() => {
                 "with constant inputs the unknowns are identified, even at rest, with others on almost every trajectory"
             }
-            (Some(true), true, true) if !self.under_any_inputs => {
+            (Some(true), true, true) if self.courses == InputCourses::Constant => {
                 "with constant inputs the unknowns are identified, even at rest, but for what follows; with others on almost \
                  every trajectory"
             }
@@ -45,7 +45,7 @@ impl Trajectories {
                  the plant rests"
             }
             (Some(true), false, true) if has_no_inputs => "the unknowns are identified while the plant moves",
-            (Some(true), false, true) if self.under_any_inputs => {
+            (Some(true), false, true) if self.courses == InputCourses::All => {
                 "the unknowns are identified without excitation by the inputs while the plant moves"
             }
             // A course of the inputs may keep a plant where it hides unknowns, as a current that is controlled does.
