@@ -11,7 +11,7 @@ use pebo_cas::Expr;
 use super::divided::Formulas;
 use super::problem::ObservabilityProblem;
 use super::regimes;
-use crate::analysis::design::{Claim, Excitation, Identifiability, Verdict};
+use crate::analysis::design::{Claim, Excitation, Identifiability, InputCourses, Verdict};
 
 /// The common decision; none where the components are not found, or differ.
 pub(super) fn on_components(problem: &ObservabilityProblem<'_>, formulas: &Formulas) -> Option<Claim<Identifiability>> {
@@ -63,6 +63,12 @@ fn join(plant: &Plant, common: &mut Claim<Identifiability>, other: Claim<Identif
     };
     if own.kind != other.kind || own.positive != other.positive || statements(own) != statements(&other) {
         return None;
+    }
+    if let (Some(trajectories), Some(others)) = (&mut own.trajectories, &other.trajectories) {
+        trajectories.everywhere &= others.everywhere;
+        if others.courses == InputCourses::Constant {
+            trajectories.courses = InputCourses::Constant;
+        }
     }
     let is_new = |condition: &String| !own.singular_where.contains(condition);
     let conditions: Vec<String> = other.singular_where.into_iter().filter(is_new).collect();
