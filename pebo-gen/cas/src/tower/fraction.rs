@@ -3,7 +3,7 @@
 use crate::poly::Poly;
 use crate::{Integer, Rational};
 
-/// A quotient of polynomials, canonical with respect to one [`Field`].
+/// A quotient of polynomials, canonical with respect to one [`Field`](super::Field).
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Fraction {
     pub(in crate::tower) num: Poly,
