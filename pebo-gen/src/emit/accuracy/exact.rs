@@ -16,6 +16,9 @@ use pebo_cas::{Arena, Expr, Rational, Symbol};
 /// More units are a loss that no author expects.
 pub(super) const MOST: f64 = 100.0;
 
+/// A part of a rounding by which a point on a border leaves the domain, and one beside it does not.
+const WITHIN: f64 = 1e-12;
+
 /// An exact value, and how much it moves when all that it depends on is rounded; none where it does not exist.
 pub(super) type Value = Option<(Interval, f64)>;
 
@@ -61,23 +64,29 @@ pub(super) fn at_once(arena: &Arena, exprs: &[Expr], place: &Place, scalar: Scal
 }
 
 /// The effects of the arguments one at a time, each varied by this part: combined, the effects of some would cancel, as
-/// those of b and c in a*b - c where that is small.
+/// those of b and c in a*b - c where that is small. Without bound where a rounded argument may have no value, but one that
+/// is moved by far less has: `sqrt(a - b)` a rounding beyond its border, and not on it.
 fn by_differences(arena: &Arena, exprs: &[Expr], still: &[Interval], (place, part): (&Place, f64)) -> Vec<f64> {
     let mut effects = vec![0.0; exprs.len()];
     for symbol in arena.symbols_of(exprs) {
         let moving: BTreeSet<Symbol> = [symbol].into();
         let reached: Vec<usize> = (0..exprs.len()).filter(|index| arena.depends_on(exprs[*index], &moving)).collect();
-        let there = |indices: &[usize]| {
+        let there = |indices: &[usize], part: f64| {
             let exprs: Vec<Expr> = indices.iter().map(|index| exprs[*index]).collect();
             arena.enclose_over(&exprs, &at(arena, &exprs, place, Some((symbol, part)))?, Precision::new(BITS))
         };
-        let moved: Vec<Option<Interval>> = match there(&reached) {
+        let moved: Vec<Option<Interval>> = match there(&reached, part) {
             Some(values) => values.into_iter().map(Some).collect(),
-            None => reached.iter().map(|index| there(&[*index])?.pop()).collect(),
+            None => reached.iter().map(|index| there(&[*index], part)?.pop()).collect(),
         };
         for (index, moved) in reached.iter().zip(moved) {
-            let difference = moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS)));
-            effects[*index] += difference.map_or(0.0, |difference| surely(&difference) / part);
+            let has_value = |part: f64| there(&[*index], part).is_some();
+            let is_beyond = || [part, -part].iter().any(|part| !has_value(*part) && has_value(part * WITHIN));
+            effects[*index] += match moved.and_then(|moved| moved.sub(&still[*index], Precision::new(BITS))) {
+                Some(difference) => surely(&difference) / part,
+                None if is_beyond() => f64::INFINITY,
+                None => 0.0,
+            };
         }
     }
     effects
@@ -109,8 +118,8 @@ impl Exact {
         };
         let units = |(exact, &found): (&Value, &f64)| {
             let Some((value, condition)) = exact else { return 0.0 };
-            if magnitude(value) > largest / 4.0 {
-                // Nothing that the scalar could hold.
+            if magnitude(value) > largest / 4.0 || condition.is_infinite() {
+                // Nothing that the scalar could hold, or nothing that rounded arguments determine.
                 return 0.0;
             }
             let Some(found) = Rational::from_f64_exact(found) else { return f64::INFINITY };
@@ -207,6 +216,23 @@ mod tests {
         let units = exact(&arena, &[root], &place, Scalar::F64).units(&[value * 1.1], Scalar::F64)[0];
         assert!(units < MOST, "{units}");
         assert!(exact(&arena, &[root], &place, Scalar::F64).units(&[1.0], Scalar::F64)[0] > MOST);
+    }
+
+    #[test]
+    fn a_rounding_beyond_a_border_determines_nothing() {
+        let arena = Arena::new();
+        let [a, b] = ["a", "b"].map(|name| arena.variable(name));
+        let steep = arena.power(arena.sub(a, b), &Rational::new(-1, 2).unwrap());
+        let near: Place = [(arena.symbol("a"), 4.0), (arena.symbol("b"), 4.0 - f64::EPSILON)].into();
+        assert_eq!(exact(&arena, &[steep], &near, Scalar::F64).units(&[f64::INFINITY], Scalar::F64), [0.0]);
+        // Away from the border no rounding makes it infinite; on it the value is that of the point.
+        let away: Place = [(arena.symbol("a"), 4.0), (arena.symbol("b"), 3.0)].into();
+        assert!(exact(&arena, &[steep], &away, Scalar::F64).units(&[f64::INFINITY], Scalar::F64)[0].is_infinite());
+        let root = arena.sqrt(arena.sub(a, b));
+        let on: Place = [(arena.symbol("a"), 4.0), (arena.symbol("b"), 4.0)].into();
+        assert!(
+            exact(&arena, &[arena.add(a, root)], &on, Scalar::F64).units(&[f64::NAN], Scalar::F64)[0].is_infinite()
+        );
     }
 
     #[test]

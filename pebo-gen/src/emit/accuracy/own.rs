@@ -122,7 +122,8 @@ impl<'a> Own<'a> {
     fn is_within(&self, value: Expr, (place, scalar): (&Place, Scalar), units: f64, roundings: f64) -> bool {
         let first = |exact: Exact| exact.sizes().next().flatten();
         let there = self.spots.iter().map(|spot| spot.there(Scalar::F32));
-        let mut sizes: Vec<f64> = there.filter_map(|there| first(there.exact(self.arena, &[value]))).collect();
+        let sizes = there.filter_map(|there| first(there.exact(self.arena, &[value])));
+        let mut sizes: Vec<f64> = sizes.filter(|size| size.is_finite()).collect();
         sizes.sort_by(f64::total_cmp);
         let usual = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
         first(exact(self.arena, &[value], place, scalar)).is_some_and(|here| units * here <= roundings * usual)
