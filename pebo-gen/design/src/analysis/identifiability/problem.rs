@@ -140,11 +140,12 @@ impl<'a> ObservabilityProblem<'a> {
         let symbols = if self.regression.is_linear(self.plant) { &self.plant.z } else { &self.regression.eta_symbols };
         let identifiable =
             identified::combinations(&self.plant.arena, self.domain, (symbols, &self.plant.hidden()), observed);
-        // At an equilibrium, or where a formula of states is zero, theta has not any value.
+        // At an equilibrium, or where a formula of states is zero, theta has not any value, and these are those of the set.
         let hidden = self.plant.hidden();
         let is_any = condition.still != Still::Plant
             && !condition.zeros.iter().any(|zero| self.plant.arena.depends_on(*zero, &hidden));
-        let determined = if is_any { self.determined(&observed.stack) } else { Determined::Nothing };
+        let is_known = is_any || self.regression.is_linear(self.plant);
+        let determined = if is_known { self.determined(&observed.stack) } else { Determined::Nothing };
         BlindTrajectory { condition, identifiable, hidden: observed.hidden.clone(), determined }
     }
 

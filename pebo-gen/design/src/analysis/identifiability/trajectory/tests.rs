@@ -430,6 +430,13 @@ fn what_is_identified_of_related_components_may_determine_the_states() {
     let line = |start: &str| lines.iter().find(|line| line.starts_with(start)).expect("a line");
     let determined = "are identified, which determine `px`, `py`, `cx`, `cy` near almost every value";
     assert!(line("while `wx` is constant, only").ends_with(determined), "{lines:?}");
+    // At rest too, at the states of which the components are functions.
+    let pendulum = "x: [p1, p2]\ny: [q1, q2]\nu: [t]\nassume: [0 < q1 < pi]\n\
+                    f_x: {p1: p2^2*cos(q1)/sin(q1)^3 + sin(q1) + t, p2: 0}\nf_y: {q1: p1, q2: p2/sin(q1)^2}\n\
+                    phi: [p1, p2, p2^2]";
+    let rest = "while the plant rests and `cos(q1) = 0`, only `z1`, `z2` are identified, which determine `p1`, `p2` near \
+                almost every value";
+    assert!(of(pendulum).iter().any(|line| line == rest), "{:?}", of(pendulum));
     // All seen from a point that the origin moves with is turned about it unseen.
     assert!(line("while all inputs are constant, only").ends_with("are identified"), "{lines:?}");
 }
