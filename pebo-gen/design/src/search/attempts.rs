@@ -467,6 +467,8 @@ impl Attempts<'_> {
         let Some(candidate) = self.candidates.iter().find(is_generalised) else { return };
         let closed = closure::coordinates::closure(self.problem, &candidate.plant, &candidate.derivation);
         self.judge(Form::Closure(Start::Products), 0, closed.map(Option::unwrap_or_default));
+        // An equation with its denominator multiplied is affine in them, and the rate itself is not.
+        self.rest();
     }
 
     fn attempt(&mut self, form: Form, ansatz: impl FnOnce(&Problem<'_>) -> Result<Ansatz, Obstacle>) {

@@ -11,6 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use pebo_cas::linear::comparison::combine;
+use pebo_cas::poly::Poly;
 use pebo_cas::tower::{Field, Obstacle};
 use pebo_cas::{Expr, Symbol};
 
@@ -49,8 +50,13 @@ pub(in crate::search) fn closure(
     let mut open = Vec::new();
     for rate in problem.output_rates() {
         let by_inverse = arena.substitute(rate, &states);
-        let is_product = products(problem, by_inverse, &hidden)?.is_some();
-        open.push(if is_product { by_inverse } else { polynomial(problem, rate, &transform)?.unwrap_or(by_inverse) });
+        if products(problem, by_inverse, &hidden)?.is_some() {
+            open.push(by_inverse);
+        } else if let Some(polynomial) = polynomial(problem, rate, &transform)? {
+            open.push(polynomial);
+        } else {
+            open.extend(cleared(problem, by_inverse)?);
+        }
     }
     while let Some(formula) = open.pop() {
         let Some(functions) = products(problem, formula, &hidden)? else { return Ok(None) };
@@ -77,6 +83,15 @@ pub(in crate::search) fn closure(
         }
     }
     Ok(Some(kept))
+}
+
+/// The numerator and the denominator of a rate, of which the equation `denominator * y' = numerator` holds the products:
+/// Haldane's `S*X/(1 + S + S^2)` those of `S^2`.
+fn cleared(problem: &Problem<'_>, rate: Expr) -> Result<[Expr; 2], Obstacle> {
+    let field = Field::over(problem.arena, &problem.domain.facts, &[rate])?;
+    let fraction = field.fraction(rate)?;
+    let show = |polynomial: &Poly| Ok::<Expr, Obstacle>(field.show(&field.of_polynomial(polynomial)?));
+    Ok([show(fraction.numerator())?, show(fraction.denominator())?])
 }
 
 /// A rate as a polynomial of low degree in the components, which a left inverse does not show where these are not
