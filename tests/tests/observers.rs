@@ -56,6 +56,7 @@ follow! {
         ["wx", "wy"], ["px_hat", "py_hat", "cx_hat", "cy_hat"];
     slopes_at_the_estimate: feed_axis_f64::FeedAxis, "../models/feed_axis.yaml", 10.0, ["v"], ["F"],
         ["F_c_hat", "F_s_hat", "v_s_hat"];
+    a_monotone_torque: wind_turbine_f64::WindTurbine, "../models/wind_turbine.yaml", 60.0, ["w"], ["T"], ["v_hat"];
     a_table_in_the_slopes: battery_curve_f64::BatteryCurve, "../models/battery_curve.yaml", 600.0, ["V"], ["I"],
         ["soc_hat", "v1_hat"];
     rates_at_expected_outputs: enzyme_f64::Enzyme, "models/enzyme.yaml", 10.0, ["S", "P"], ["v"], ["C_hat"];

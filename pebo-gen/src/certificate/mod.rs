@@ -186,7 +186,7 @@ fn derived(plant: &Plant, derivation: &Derivation) -> Option<Literal> {
         ("primitive_1", rows(&regression.primitive_1)),
         ("phi_0", texts(&regression.phi_0)),
         ("phi_1", rows(&regression.phi_1)),
-        ("local", if regression.is_local { Literal::Truth(true) } else { Literal::None }),
+        ("local", if regression.is_at_estimate() { Literal::Truth(true) } else { Literal::None }),
         (
             "eta",
             Literal::named(

@@ -123,8 +123,8 @@ pub(crate) fn regression(plant: &Plant, regression: &Regression) -> Vec<String> 
     let left_out = |unused: &UnusedOutput| {
         format!("`{}` is left out: {}", plant.arena.name(plant.y[unused.output].symbol), unused.reason.words())
     };
-    let local = regression.is_local.then(|| Regression::LOCAL.to_owned());
-    local.into_iter().chain(more).chain(other).chain(regression.unused.iter().map(left_out)).collect()
+    let meaning = regression.meaning().map(str::to_owned);
+    meaning.into_iter().chain(more).chain(other).chain(regression.unused.iter().map(left_out)).collect()
 }
 
 /// Notes on identifiability: its proof, its exceptions, and the signals that have to move.

@@ -81,7 +81,7 @@ fn fundamental(plant: &Plant, derivation: &Derivation) -> Vec<Remark> {
     let Some((cascade, fundamental)) = cascade.and_then(|cascade| Some((cascade, cascade.fundamental?))) else {
         return Vec::new();
     };
-    let remedy = match (derivation.is_local(), derivation.can_rebase(plant)) {
+    let remedy = match (derivation.at_estimate().is_some(), derivation.can_rebase(plant)) {
         (true, _) => MOVED,
         (false, true) => REBASE,
         (false, false) => RESTART,

@@ -154,9 +154,9 @@ pub enum RegressionKind {
 /// Claim 3: the unknowns enter linearly.
 #[derive(Clone, Debug)]
 pub struct Regression {
-    /// True if they do to first order alone: `Phi_0` is the equation where the extension is z, and `Phi_1` its slope by
-    /// theta there.
-    pub is_local: bool,
+    /// The sense in which it holds where it is not linear in functions of theta: `Phi_0` is then the equation where the
+    /// extension is z, and `Phi_1` its slope by theta there.
+    pub at_estimate: Option<AtEstimate>,
     /// The left side.
     pub kind: RegressionKind,
     /// For each row, the positions in the plant's outputs of those whose equation it is: of a relation, all in it.
@@ -183,6 +183,15 @@ pub struct Regression {
     pub unused: Vec<UnusedOutput>,
 }
 
+/// The sense in which a regression with the slopes at the estimate holds.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum AtEstimate {
+    /// To first order, in a neighbourhood.
+    Local,
+    /// Each equation is a function of one component of z, and strictly monotone in it on the domain.
+    Monotone,
+}
+
 /// An output whose equation is left out of the regression.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct UnusedOutput {
@@ -199,6 +208,8 @@ pub enum UnusedReason {
     Nonlinear,
     /// It holds an unmeasured signal.
     Hidden,
+    /// It was not found to be monotone in the unknowns.
+    NotMonotone,
     /// With it, the claims were not proved.
     Unproved,
 }
@@ -219,10 +230,16 @@ impl Regression {
             && self.eta.iter().zip(&plant.theta).all(|(eta, theta)| plant.arena.as_symbol(*eta) == Some(*theta))
     }
 
-    /// A local regression where the extension has these values, as z itself or phi on a trajectory; any other as it is.
+    /// True if its slopes are those at the estimate, to which the extension has to be moved at each sample.
+    pub fn is_at_estimate(&self) -> bool {
+        self.at_estimate.is_some()
+    }
+
+    /// A regression at the estimate where the extension has these values, as z itself or phi on a trajectory; any other as
+    /// it is.
     #[must_use]
     pub fn with_extension(&self, plant: &Plant, values: &[Expr]) -> Cow<'_, Self> {
-        if !self.is_local {
+        if !self.is_at_estimate() {
             return Cow::Borrowed(self);
         }
         let values = plant.chi.iter().chain(&plant.xi).copied().zip(values.iter().copied().cycle()).collect();
@@ -478,10 +495,10 @@ pub enum Excitation {
 }
 
 impl Derivation {
-    /// True if the regression is one to first order.
+    /// The sense in which the regression holds, where its slopes are those at the estimate.
     #[must_use]
-    pub fn is_local(&self) -> bool {
-        self.regression.result.as_ref().is_some_and(|regression| regression.is_local)
+    pub fn at_estimate(&self) -> Option<AtEstimate> {
+        self.regression.result.as_ref()?.at_estimate
     }
 
     /// The unknowns that the known start fixes and no output shows.
@@ -493,7 +510,7 @@ impl Derivation {
         identifiability.by_start.iter().map(|position| symbols[*position]).collect()
     }
 
-    /// The domain conditions of the way from estimates back to x, and of a local regression at these, beside the
+    /// The domain conditions of the way from estimates back to x, and of a regression at these, beside the
     /// assumptions on y: an estimate of z (or, where the regression has functions of theta, of these) may lie where the
     /// true one cannot.
     pub fn conditions_on_estimates(&self, plant: &Plant) -> Vec<(Expr, Relation)> {
@@ -502,7 +519,7 @@ impl Derivation {
         formulas.extend(self.left_inverse.result.iter().flat_map(|inverse| &inverse.x).map(|(_, formula)| *formula));
         if let Some(regression) = &self.regression.result {
             formulas.extend(&regression.theta);
-            if regression.is_local {
+            if regression.is_at_estimate() {
                 let z: Vec<Expr> = plant.z.iter().map(|z| arena.of_symbol(*z)).collect();
                 let near = regression.with_extension(plant, &z);
                 formulas.extend(near.phi_0.iter().chain(near.phi_1.iter().flatten()));
@@ -515,6 +532,9 @@ impl Derivation {
             let free = arena.symbols_of(&[*part]).iter().any(|symbol| estimates.contains(symbol));
             free && !domain.implies(arena, *part, *relation)
         });
+        let positive: Vec<Expr> =
+            conditions.iter().filter(|(_, r)| *r == Relation::Positive).map(|(p, _)| *p).collect();
+        conditions.retain(|(part, relation)| *relation == Relation::Positive || !positive.contains(part));
         conditions
     }
 

@@ -70,7 +70,7 @@ impl Regression {
     /// no value at zero.
     pub fn in_z(&self, plant: &Plant) -> Option<Vec<EquationInZ>> {
         let arena = &plant.arena;
-        if self.is_local || !arena.domain_conditions(&self.eta, Regularity::Defined).is_empty() {
+        if self.is_at_estimate() || !arena.domain_conditions(&self.eta, Regularity::Defined).is_empty() {
             return None;
         }
         // With theta = 0 the extension is z.

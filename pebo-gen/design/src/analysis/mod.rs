@@ -46,8 +46,8 @@ mod tests;
 
 pub use advice::remark::{Drift, Equilibrium, OperatingPoint, Remarks};
 pub use design::{
-    BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Determined, Excitation, Fundamental, Gram,
-    Identifiability, InputCourses, LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still,
+    AtEstimate, BlindTrajectory, Cascade, Claim, Class, Comparison, Derivation, Determined, Excitation, Fundamental,
+    Gram, Identifiability, InputCourses, LeftInverse, Origin, Outcome, Positive, Regression, RegressionKind, Still,
     Trajectories, TrajectoryCondition, UnusedOutput, UnusedReason, Verdict, Witness,
 };
 pub use identifiability::trajectory::words::on_sides;

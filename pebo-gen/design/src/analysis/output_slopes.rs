@@ -31,7 +31,7 @@ impl OutputSlopes {
         let arena = &plant.arena;
         let outputs = regression.outputs_with_rates(plant)?;
         let (known, mut factor) = at_start(plant, regression);
-        if regression.is_local {
+        if regression.is_at_estimate() {
             // The known side is all of the equation.
             factor.iter_mut().for_each(Vec::clear);
         }

@@ -7,7 +7,9 @@
 use crate::plant::{Plant, TransformOrigin};
 
 use super::advice::remark::Equilibrium;
-use super::design::{Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, UnusedReason, Verdict};
+use super::design::{
+    AtEstimate, Excitation, Fundamental, Origin, Outcome, Regression, RegressionKind, UnusedReason, Verdict,
+};
 
 impl Verdict {
     /// The verdict in a word.
@@ -55,6 +57,7 @@ impl UnusedReason {
         match self {
             Self::Nonlinear => "its equation was not found to be linear in the unknowns",
             Self::Hidden => "an unmeasured signal is in its equation",
+            Self::NotMonotone => "its equation was not found to be monotone in one unknown",
             Self::Unproved => "with its equation the claims were not proved",
         }
     }
@@ -105,18 +108,29 @@ impl Equilibrium {
 }
 
 impl Regression {
-    /// The meaning of a local one.
-    pub const LOCAL: &str = "it holds to first order at the estimate, to which the extension is moved at each sample: that \
-                             converges from a neighbourhood of the state, whose size no proof gives";
+    /// The meaning of one at the estimate.
+    pub fn meaning(&self) -> Option<&'static str> {
+        Some(match self.at_estimate? {
+            AtEstimate::Local => {
+                "it holds to first order at the estimate, to which the extension is moved at each sample: that converges \
+                 from a neighbourhood of the state, whose size no proof gives"
+            }
+            AtEstimate::Monotone => {
+                "each equation is monotone in one unknown, with the slope at the estimate, to which the extension is moved \
+                 at each sample: the gradient moves no estimate within the assumptions away from the state, however far"
+            }
+        })
+    }
 
     /// The parameterisation in a word: over-parameterised too where functions of the author's own unknowns are among
-    /// theta, local where theta enters linearly to first order alone.
+    /// theta, monotone or local where theta enters linearly to first order alone.
     pub fn parameterisation(&self, plant: &Plant) -> &'static str {
         let is_lifted = matches!(plant.origin, TransformOrigin::Lifted { .. });
-        match (self.is_local, self.is_linear(plant) && !is_lifted) {
-            (true, _) => "local",
-            (false, true) => "linear",
-            (false, false) => "over-parameterised",
+        match (self.at_estimate, self.is_linear(plant) && !is_lifted) {
+            (Some(AtEstimate::Local), _) => "local",
+            (Some(AtEstimate::Monotone), _) => "monotone",
+            (None, true) => "linear",
+            (None, false) => "over-parameterised",
         }
     }
 }

@@ -38,6 +38,8 @@ pub struct Plant {
     pub relation_form: Option<(RelationForm, Span)>,
     /// The place where a regression to first order is admitted, if it is.
     pub local_regression: Option<Span>,
+    /// True if a regression that is monotone in theta is admitted where none is linear in functions of it.
+    pub monotone_regression: bool,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
     /// Unmeasured states with their rates.
@@ -162,12 +164,6 @@ impl Plant {
         self.relation_form.is_some_and(|wanted| wanted.0 == form)
     }
 
-    /// The same plant, where equations may be used to first order at the estimate.
-    #[must_use]
-    pub fn with_local_regression(&self) -> Self {
-        Self { local_regression: Some(Span::NOWHERE), ..self.clone() }
-    }
-
     /// The same plant with another transform, which was searched for: a component that fails is pointed at where the
     /// rates of the states begin.
     #[must_use]
@@ -228,9 +224,14 @@ impl Plant {
     /// The same plant where the first of these is larger than the second.
     #[must_use]
     pub fn with_larger(&self, larger: Symbol, smaller: Symbol) -> Self {
+        self.with_positive_expression(self.arena.sub(self.arena.of_symbol(larger), self.arena.of_symbol(smaller)))
+    }
+
+    /// The same plant where an expression is positive.
+    #[must_use]
+    pub fn with_positive_expression(&self, expr: Expr) -> Self {
         let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
         let mut plant = self.clone();
-        let expr = self.arena.sub(self.arena.of_symbol(larger), self.arena.of_symbol(smaller));
         plant.assumptions.push(Assumption { expr, relation: Relation::Positive, span });
         plant
     }

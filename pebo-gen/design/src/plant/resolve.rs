@@ -117,6 +117,7 @@ impl Plant {
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
             relation_form: regression_of(model).ok(),
             local_regression: regression_of(model).err().flatten(),
+            monotone_regression: true,
             proposal,
             start: start_of(&arena, model, &parameters, &outputs),
             parameters,

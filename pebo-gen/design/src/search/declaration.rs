@@ -8,11 +8,13 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::analysis::{Class, Derivation, Verdict};
+use crate::analysis::{AtEstimate, Class, Verdict};
 use crate::plant::Plant;
 use crate::source;
+use pebo_cas::forms::tidy;
 use pebo_cas::{Arena, Expr, Function, Node, Rational, Relation, Symbol};
 
+use super::at_estimate;
 use super::candidate::Candidate;
 use super::problem::Problem;
 use super::symmetry::Symmetry;
@@ -31,6 +33,8 @@ pub enum Declaration {
     Angles(Vec<(Symbol, Expr)>),
     /// These states are angles within a quarter of the period to either side of zero.
     Bounded(Vec<(Symbol, Expr)>),
+    /// These expressions are positive.
+    Assumed(Vec<Expr>),
     /// No class of cascade is asked for.
     AnyClass,
     /// The regression may be one to first order.
@@ -46,7 +50,7 @@ pub enum Declaration {
 impl Declaration {
     /// True if it is a smaller domain of the same plant.
     pub(super) fn is_of_domain(&self) -> bool {
-        matches!(self, Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_))
+        matches!(self, Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_) | Self::Assumed(_))
     }
 
     /// The lines of the model file of the plant with it.
@@ -54,7 +58,7 @@ impl Declaration {
         let arena = &plant.arena;
         let listed = |entries: Vec<String>| entries.join(", ");
         match self {
-            Self::Positive(_) | Self::Larger(..) | Self::Bounded(_) => {
+            Self::Positive(_) | Self::Larger(..) | Self::Bounded(_) | Self::Assumed(_) => {
                 format!("`assume: [{}]`", listed(self.assumed(arena)))
             }
             Self::Angles(angles) => {
@@ -85,7 +89,7 @@ impl Declaration {
     pub fn help(&self, plant: &Plant) -> String {
         let arena = &plant.arena;
         match self {
-            Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_) => {
+            Self::Positive(_) | Self::Larger(..) | Self::Angles(_) | Self::Bounded(_) | Self::Assumed(_) => {
                 format!("write {}, if that holds of the plant", self.lines(plant))
             }
             Self::Unmeasured(states) => {
@@ -123,6 +127,7 @@ impl Declaration {
             Self::Positive(states) => signs(arena, states),
             Self::Larger(larger, smaller) => vec![format!("{} > {}", arena.name(*larger), arena.name(*smaller))],
             Self::Bounded(angles) => bounds(arena, angles),
+            Self::Assumed(positive) => positive.iter().map(|expr| format!("{} > 0", arena.print(*expr))).collect(),
             Self::Angles(_)
             | Self::AnyClass
             | Self::Local
@@ -158,9 +163,10 @@ pub(super) fn helpful(
 ) -> Option<(Candidate, Declaration)> {
     with_signs(problem, candidates)
         .or_else(|| with_order(problem, symmetry?, class, accepted))
-        .or_else(|| with_smooth_states(problem, class, accepted))
+        .or_else(|| with_smooth_formulas(problem, class, accepted))
         .or_else(|| with_angles(problem, class, accepted))
         .or_else(|| with_bounds(problem, class, accepted))
+        .or_else(|| with_monotone_rates(problem))
         .or_else(|| with_any_class(problem, class, accepted))
 }
 
@@ -177,24 +183,31 @@ fn with_order(
     Some((candidate, Declaration::Larger(larger, smaller)))
 }
 
-/// The transform of the plant in which the states whose signs divide its formulas are positive: friction while an axis
-/// turns one way.
-fn with_smooth_states(
+/// The transform of the plant on one side of the walls that divide its formulas: friction while an axis turns one way, a
+/// spring while it is in contact. A single wall has two sides.
+fn with_smooth_formulas(
     problem: &Problem<'_>,
     class: Option<Class>,
     accepted: Accepted<'_>,
 ) -> Option<(Candidate, Declaration)> {
     let (plant, arena) = (problem.plant, problem.arena);
     let values = plant.y.iter().filter_map(|output| output.value).map(|value| value.expr);
+    let hidden: BTreeSet<Symbol> = problem.x.iter().copied().collect();
+    let is_signed = |expr: Expr| problem.domain.implies(arena, expr, Relation::Positive);
+    let is_open =
+        |expr: &Expr| arena.depends_on(*expr, &hidden) && ![*expr, arena.neg(*expr)].into_iter().any(is_signed);
     let dividers = arena.dividers(&plant.rates().into_values().chain(values).collect::<Vec<Expr>>());
-    let mut states = without_sign(problem);
-    states.retain(|state| dividers.contains(&arena.of_symbol(*state)));
-    if states.is_empty() || !problem.goes_on() {
-        return None;
-    }
-    let plant = plant.with_positive(&states);
-    let candidate = arena.budget().share(SHARE, || accepted(&plant, class))?;
-    Some((candidate, Declaration::Positive(states)))
+    let walls: Vec<Expr> = BTreeSet::from_iter(dividers.into_iter().filter(is_open)).into_iter().collect();
+    let sides = match walls[..] {
+        [] => return None,
+        [wall] => vec![vec![wall], vec![arena.neg(wall)]],
+        _ => vec![walls],
+    };
+    sides.into_iter().take_while(|_| problem.goes_on()).find_map(|side| {
+        let there = side.iter().fold(plant.clone(), |plant, positive| plant.with_positive_expression(*positive));
+        let candidate = arena.budget().share(SHARE, || accepted(&there, class))?;
+        Some((candidate, Declaration::Assumed(side)))
+    })
 }
 
 /// The states of which the assumptions do not say that they are positive, or negative.
@@ -310,25 +323,34 @@ pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
     plant.x.iter().map(|state| state.symbol).filter(|state| !seen.contains(state)).collect()
 }
 
-/// The transform with the fewest components, the states or one of these, whose regression to first order is accepted, or
-/// proves that nothing recovers the states.
-pub(super) fn with_local_regression(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<Candidate> {
-    let plant = problem.plant.with_local_regression();
-    let near = Problem::of(&plant);
-    let is_open = |candidate: &&Candidate| {
-        let Derivation { cascade, left_inverse, .. } = &candidate.derivation;
-        cascade.verdict == Verdict::Proved && left_inverse.verdict == Verdict::Proved
+/// The states of the plant in which outputs are monotone in them: where a factor of a slope has one sign.
+fn with_monotone_rates(problem: &Problem<'_>) -> Option<(Candidate, Declaration)> {
+    let (plant, arena) = (problem.plant, problem.arena);
+    let hidden: BTreeSet<Symbol> = problem.x.iter().copied().collect();
+    let formulas =
+        plant.y.iter().flat_map(|output| output.rate.iter().chain(&output.value)).map(|formula| formula.expr);
+    let shortest = |expr: Expr| tidy::shortest(arena, &problem.domain, expr);
+    let slopes =
+        formulas.flat_map(|formula| hidden.iter().map(move |state| shortest(arena.derivative(formula, *state))));
+    let parts = |slope: Expr| match arena.node(slope) {
+        Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+        _ => vec![slope],
     };
-    let states = problem.x.iter().map(|state| problem.arena.of_symbol(*state)).collect();
-    let mut transforms: Vec<Vec<Expr>> = candidates.iter().filter(is_open).map(|c| c.plant.transform()).collect();
-    transforms.insert(0, states);
-    transforms.sort_by_key(Vec::len);
-    let local = |phi: Vec<Expr>| problem.arena.budget().share(SHARE, || Candidate::of(&near, &phi));
-    transforms
-        .into_iter()
-        .take_while(|_| problem.goes_on())
-        .map(local)
-        .find(|local| local.is_full() || local.hides_states())
+    let is_plane = |expr: &Expr| {
+        let moves = |state: &Symbol| arena.depends_on(shortest(arena.derivative(*expr, *state)), &hidden);
+        arena.depends_on(*expr, &hidden) && !hidden.iter().any(moves)
+    };
+    let is_signed = |expr: Expr| problem.domain.implies(arena, expr, Relation::Positive);
+    let is_open = |expr: &Expr| is_plane(expr) && !is_signed(*expr) && !is_signed(arena.neg(*expr));
+    let open: BTreeSet<Expr> = slopes.flat_map(parts).filter(is_open).collect();
+    // Of more, no one sign is likely.
+    let [factor] = Vec::from_iter(open)[..] else { return None };
+    [factor, arena.neg(factor)].into_iter().take_while(|_| problem.goes_on()).find_map(|positive| {
+        let plant = plant.with_positive_expression(positive);
+        let there = Problem::of(&plant);
+        let candidate = at_estimate::found(&there, AtEstimate::Monotone, &[]).filter(Candidate::is_full)?;
+        Some((candidate, Declaration::Assumed(vec![positive])))
+    })
 }
 
 /// The transform of any class, where one is asked for.

@@ -17,6 +17,7 @@ mod integral;
 mod problem;
 
 mod ansatz;
+mod at_estimate;
 mod attempts;
 mod candidate;
 mod choice;
@@ -36,7 +37,7 @@ mod symmetry;
 mod tests;
 pub mod words;
 
-use crate::analysis::{Class, Derivation, Outcome, Verdict};
+use crate::analysis::{AtEstimate, Class, Derivation, Outcome, Verdict};
 use crate::plant::{Plant, TransformOrigin};
 
 use attempts::attempted;
@@ -66,11 +67,11 @@ pub use words::settles;
 /// ```
 #[must_use]
 pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
-    // Transforms are found without a regression to first order, with which any of them would do.
-    let without_local = Plant { local_regression: None, ..plant.clone() };
-    let problem = Problem::of(&without_local);
+    // Transforms are found without a regression at the estimate, with which any of them would do.
+    let exact = Plant { local_regression: None, monotone_regression: false, ..plant.clone() };
+    let problem = Problem::of(&exact);
     // The states themselves are tried first where a regression to first order is asked for.
-    let near = plant.local_regression.and_then(|_| declaration::with_local_regression(&problem, &[]));
+    let near = plant.local_regression.and_then(|_| at_estimate::found(&problem, AtEstimate::Local, &[]));
     let near = near.filter(Candidate::is_full);
     if let Some(near) = near.filter(|near| class.is_none_or(|class| near.derivation.class == class)) {
         return Search::of(near);
@@ -79,9 +80,13 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let (mut candidates, tried) = (std::mem::take(&mut attempts.candidates), std::mem::take(&mut attempts.tried));
     let is_found = |candidates: &[Candidate]| candidates.first().is_some_and(Candidate::is_full);
     if plant.local_regression.is_some() {
-        let local = declaration::with_local_regression(&problem, &candidates);
+        let local = at_estimate::found(&problem, AtEstimate::Local, &candidates);
         candidates.retain(|candidate| local.as_ref().is_none_or(|local| local.formulas() != candidate.formulas()));
         candidates.splice(0..0, local);
+    }
+    if !is_found(&candidates) && plant.monotone_regression {
+        let monotone = at_estimate::found(&problem, AtEstimate::Monotone, &candidates).filter(Candidate::is_full);
+        candidates.splice(0..0, monotone);
     }
     if !is_found(&candidates) {
         let known = || known::from_known_start(&problem, class, &accepted);
@@ -160,7 +165,7 @@ fn declared(
     }
     // Where two states have the same outputs, a local regression would find either.
     let is_local_of_use = !local_is_asked && symmetry.is_none();
-    let local = || declaration::with_local_regression(problem, candidates);
+    let local = || at_estimate::found(problem, AtEstimate::Local, candidates);
     match if is_local_of_use && is_open { local() } else { None } {
         Some(local) if local.is_full() => return vec![(local, Declaration::Local)],
         local => candidates.splice(0..0, local).for_each(drop),
@@ -191,7 +196,7 @@ fn accepted(plant: &Plant, class: Option<Class>) -> Option<Candidate> {
 /// outputs.
 #[must_use]
 pub fn symmetry_beside(plant: &Plant, derivation: &Derivation) -> Option<Symmetry> {
-    if derivation.outcome != Outcome::Accepted || !derivation.is_local() {
+    if derivation.outcome != Outcome::Accepted || derivation.at_estimate() != Some(AtEstimate::Local) {
         return None;
     }
     plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&Problem::of(plant))).ok().flatten()

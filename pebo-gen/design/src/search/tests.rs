@@ -10,7 +10,7 @@ use super::completion::decision::decided;
 use super::problem::Problem;
 use super::symmetry::{SymmetryKind, symmetry};
 use super::{Declaration, SearchVerdict, solve, symmetry_beside};
-use crate::analysis::Class;
+use crate::analysis::{AtEstimate, Class};
 use crate::model::Model;
 use crate::plant::Plant;
 use crate::source::Source;
@@ -222,7 +222,7 @@ fn a_plant_that_lacks_a_sign_is_not_refused() {
 /// model asks for it, it has one.
 #[test]
 fn a_local_regression_is_offered() {
-    let lines = "x: [n]\ny: [v]\nu: [F]\nassume: [v > 0]\nf_x: {n: 0}\nf_y: {v: F - exp(n*v)}";
+    let lines = "x: [n]\ny: [v]\nu: [F]\nassume: [v > 0]\nf_x: {n: 0}\nf_y: {v: F - exp(n*v) - exp(-n)}";
     let offered = solve(&plant(lines), None);
     let declared: Vec<&Declaration> = offered.declared.iter().map(|(_, declaration)| declaration).collect();
     assert_eq!((offered.verdict, declared), (SearchVerdict::Undecided, vec![&Declaration::Local]));
@@ -243,6 +243,51 @@ fn a_local_regression_is_offered() {
     assert!(hidden.symmetry.is_none() && hidden.candidates[0].hides_states(), "{:?}", hidden.symmetry);
     let even = solve(&plant("x: [n]\ny: [v]\nu: [F]\nf_x: {n: 0}\nf_y: {v: F - cos(n*v)}"), None);
     assert!(even.declared.iter().all(|(_, declaration)| *declaration != Declaration::Local), "{:?}", even.declared);
+}
+
+/// Where outputs are monotone in an unknown, no neighbourhood is asked for; what the assumptions lack is told.
+#[test]
+fn a_monotone_regression_is_found() {
+    let drag = "x: [n]\ny: [v]\nu: [F]\nassume: [v > 0]\nf_x: {n: 0}\nf_y: {v: F - v^n}";
+    let found = solve(&plant(drag), None);
+    assert_eq!((found.verdict, found.candidates[0].formulas()), (SearchVerdict::Found, vec!["n".to_owned()]));
+    assert_eq!(found.candidates[0].derivation.at_estimate(), Some(AtEstimate::Monotone));
+    let turbine = plant("x: [v]\ny: [w]\nu: [T]\nassume: [v > 0, w > 0]\nf_x: {v: 0}\nf_y: {w: v^3*w*exp(-v/w) - T}");
+    let offered = solve(&turbine, None);
+    let [(candidate, declared)] = &offered.declared[..] else { panic!("{:?}", offered.declared) };
+    assert_eq!((offered.verdict, candidate.is_full()), (SearchVerdict::Undecided, true));
+    assert_eq!(declared.lines(&turbine), "`assume: [3*w - v > 0]`");
+}
+
+/// Haldane's kinetics: with its denominator multiplied, the rate holds the square of a component.
+#[test]
+fn a_quotient_is_lifted_by_its_denominator() {
+    for denominator in ["1 + S + S^2", "K + S + S^2/L"] {
+        let lines = format!(
+            "parameters: [K, L]\nx: [S]\ny: [X]\nu: [D]\nassume: [S > 0, X > 0, K > 0, L > 0]\n\
+             f_x: {{S: D*(5 - S) - 2*S*X/({denominator})}}\nf_y: {{X: S*X/({denominator}) - D*X}}"
+        );
+        let found = solve(&plant(&lines), None);
+        assert_eq!((found.verdict, found.candidates[0].formulas().len()), (SearchVerdict::Found, 2), "{denominator}");
+    }
+}
+
+/// A spring that is in contact or not, a heater that is warmer than its surroundings: on one side of the wall there is an
+/// observer, which tells what to assume.
+#[test]
+fn a_side_of_a_wall_is_offered() {
+    let assumed = |lines: &str| {
+        let plant = plant(lines);
+        let offered = solve(&plant, None);
+        assert_eq!(offered.verdict, SearchVerdict::Undecided, "{lines}");
+        offered.declared.iter().map(|(_, declaration)| declaration.lines(&plant)).collect::<Vec<String>>()
+    };
+    let contact = "x: [v, q0]\ny: [q]\nu: [F]\nf_x: {v: \"F - 9*max(q - q0, 0)\", q0: 0}\nf_y: {q: v}";
+    assert_eq!(assumed(contact), ["`assume: [q - q0 > 0]`"]);
+    let heater = "x: [G, Ta]\ny: [T]\nu: [P]\nassume: [G > 0]\nf_x: {G: 0, Ta: 0}\nf_y: {T: \"P - G*max(T - Ta, 0)\"}";
+    assert_eq!(assumed(heater), ["`assume: [T - Ta > 0]`"]);
+    let friction = "x: [v, F]\ny: [q]\nu: [u]\nf_x: {v: u - F*sign(v) - v, F: 0}\nf_y: {q: v}";
+    assert_eq!(assumed(friction), ["`assume: [v > 0]`"]);
 }
 
 /// Surfaces with known Killing fields: three on constant curvature, one on a surface of revolution.

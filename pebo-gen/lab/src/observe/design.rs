@@ -130,7 +130,7 @@ impl Design {
             equations: regression.phi_0.len(),
             instants,
             is_generalised: cascade.lambda.is_some(),
-            is_local: regression.is_local,
+            is_local: regression.is_at_estimate(),
             cascade: compile(&at_sample, &[cascade.h.as_slice(), &lambda].concat())?,
             regression: compile(&regressed, &sides(&regression.phi_0, &regression.phi_1))?,
             primitive: match regression.kind {

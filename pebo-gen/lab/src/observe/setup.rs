@@ -139,7 +139,7 @@ impl Settings {
             hold: if resolved.straight { Hold::First } else { Hold::Zero },
             estimator: resolved.estimator,
             rebase: match resolved.rebase {
-                _ if regression.is_local => Some(Rebase::Samples(1)),
+                _ if regression.is_at_estimate() => Some(Rebase::Samples(1)),
                 Some(written) => Some(Rebase::of(written)?),
                 None => None,
             },
@@ -180,7 +180,10 @@ impl Settings {
             settings::Estimator::AdaptiveLeastSquares(covariance, guess) => {
                 Estimator::AdaptiveLeastSquares(rounded(covariance), all(guess))
             }
-            // Known numbers lead to least squares.
+            settings::Estimator::NormalisedGradient { gain, mu } => {
+                Estimator::NormalisedGradient { gain: all(gain), mu: mu.to_f64() }
+            }
+            // Known numbers lead to no other.
             _ => return None,
         };
         let chi_0 = all(&settings.chi_0);

@@ -72,14 +72,14 @@ pub(super) fn derive(
     let begun = || beginning(&known, plant, derivation).unwrap_or_else(none);
     let mut chi_0 = frame.chi_0.clone().unwrap_or_else(begun);
     let point = completed(&known, plant, &formulas, &chi_0)?;
-    let deviations = Deviations::of(model, plant, &known, (shown, period), formulas.regression.is_local)?;
+    let deviations = Deviations::of(model, plant, &known, (shown, period), formulas.regression.is_at_estimate())?;
     let late = late((model, plant), (derivation, &formulas.regression), (kind, period), problems).ok()?;
 
     if period.is_none()
         && let Some(lacking) = formulas.without_period(kind, (&point, &deviations), frame.process_noise.is_some())
     {
         if let Some(asked) = asked {
-            problems.push(no_period(plant, lacking, asked));
+            problems.push(no_period(plant, lacking.word(), asked));
         }
         return None;
     }
@@ -223,7 +223,12 @@ fn sensor_noise(rates: &Slopes, point: &Point, deviations: &Deviations, period: 
 }
 
 /// The settings of the section beside its standard deviations.
-fn frame(model: &Model, plant: &Plant, derivation: &Derivation, problems: &mut Diagnostics) -> Option<Frame<Rational>> {
+pub(super) fn frame(
+    model: &Model,
+    plant: &Plant,
+    derivation: &Derivation,
+    problems: &mut Diagnostics,
+) -> Option<Frame<Rational>> {
     let states = derivation.left_inverse.result.as_ref()?.x.len();
     let read = |number: &Decimal| Rational::from_decimal(number.text()).ok();
     Frame::resolve(&model.observer, (plant.phi.len(), states), read, problems)
@@ -294,7 +299,7 @@ fn idle_hold(plant: &Plant, hold: Span) -> Diagnostic {
         .help("remove `hold`, or choose a `filter` or `window` and the numbers of an estimator")
 }
 
-fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagnostic {
+pub(super) fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagnostic {
     let name = plant.arena.name(lacking);
     let message = format!("what `{key}` comes to depends on where the plant operates: `{name}` is not known");
     let is_parameter = plant.parameters.iter().any(|parameter| parameter.symbol == lacking);
@@ -308,7 +313,7 @@ fn no_point(plant: &Plant, (key, span): (&str, Span), lacking: Symbol) -> Diagno
     Diagnostic::error(Code::SimulationIncomplete, span, message).help(help)
 }
 
-fn out_of_range(span: Span) -> Diagnostic {
+pub(super) fn out_of_range(span: Span) -> Diagnostic {
     Diagnostic::error(Code::NumberOutOfRange, span, "the numbers that are derived of these are out of range")
         .help("choose standard deviations, and units, in which numbers are nearer to 1")
 }
@@ -320,10 +325,20 @@ enum OfPeriod {
     ProcessNoise,
 }
 
-fn no_period(plant: &Plant, what: OfPeriod, (key, span): (&str, Span)) -> Diagnostic {
-    let (what, instead) = match what {
-        OfPeriod::Filter => ("filter", format!("a `filter` and gains in place of `{key}`")),
-        OfPeriod::ProcessNoise => ("process noise", "`process_noise`".to_owned()),
+impl OfPeriod {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Filter => "filter",
+            Self::ProcessNoise => "process noise",
+        }
+    }
+}
+
+pub(super) fn no_period(plant: &Plant, what: &str, (key, span): (&str, Span)) -> Diagnostic {
+    let instead = if what == OfPeriod::ProcessNoise.word() {
+        "`process_noise`".to_owned()
+    } else {
+        format!("a `filter` and gains in place of `{key}`")
     };
     let message = format!("the {what} of `{}` depends on the period of its samples", plant.name);
     Diagnostic::error(Code::SimulationIncomplete, span, message)

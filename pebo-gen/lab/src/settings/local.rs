@@ -1,14 +1,14 @@
-//! Refuses settings that a local regression does not admit.
+//! Refuses settings that a regression at the estimate does not admit.
 
 use pebo_design::analysis::Derivation;
 use pebo_design::model::Model;
 use pebo_design::source::{Code, Diagnostic};
 
-/// The refusal of a setting, where the regression is of first order at the extension: that has to be the estimate at each
+/// The refusal of a setting, where the regression has its slopes at the extension: that has to be the estimate at each
 /// sample, and rows of the past are of estimates that have been left.
 pub(super) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnostic> {
     let regression = derivation.regression.result.as_ref()?;
-    if !regression.is_local {
+    if !regression.is_at_estimate() {
         return None;
     }
     let observer = &model.observer;
@@ -23,6 +23,6 @@ pub(super) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnost
         }
         _ => return None,
     };
-    let message = format!("`{key}` does not go with a local regression");
+    let message = format!("`{key}` does not go with a regression at the estimate");
     Some(Diagnostic::error(Code::SettingConflict, span, message).note(note).help(format!("remove `{key}`")))
 }

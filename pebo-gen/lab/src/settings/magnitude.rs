@@ -19,9 +19,6 @@ const START: f64 = 10.0;
 /// The same of a local regression: the estimate begins at half the state, and converges from a neighbourhood.
 const NEAR: f64 = 1.0;
 
-/// Samples within which a constant drifts by its own magnitude.
-const SAMPLES: f64 = 1000.0;
-
 /// The drift of a state that has a rate, as a share of the drift of a constant.
 const DRIFT: f64 = 0.02;
 
@@ -49,6 +46,9 @@ pub(super) struct Deviations {
 }
 
 impl Deviations {
+    /// Samples within which a constant drifts by its own magnitude.
+    pub(super) const SAMPLES: f64 = 1000.0;
+
     /// The deviations of the model, those that samples show, and assumed ones in place of the rest; `period` is that of
     /// the samples.
     pub(super) fn of(
@@ -69,10 +69,7 @@ impl Deviations {
             |symbol: Symbol| point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT);
         let simulated = |symbol: Symbol| model.simulation.as_ref()?.deviation(&arena.name(symbol));
         // A plant that starts at rest has its rates later.
-        let along: Vec<Point> = match shown.course.as_slice() {
-            [] => vec![point.clone()],
-            course => course.iter().map(|row| point.with(&shown.signals, row)).collect(),
-        };
+        let along = shown.along(point);
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let sensor = |symbol: &Symbol| {
@@ -87,7 +84,7 @@ impl Deviations {
         let drift = |state: &State| match of(&written.disturbance, state.symbol) {
             Some(deviation) => Some(deviation),
             None if silent => {
-                let (size, root) = (magnitude(state.symbol), (SAMPLES * period?).sqrt());
+                let (size, root) = (magnitude(state.symbol), (Self::SAMPLES * period?).sqrt());
                 let rate = rate(plant, state, &along);
                 if arena.is_zero(state.rate.expr) {
                     return Some(size / root);

@@ -26,6 +26,7 @@ mod known;
 mod late;
 mod local;
 mod magnitude;
+mod monotone;
 mod point;
 #[cfg(feature = "simulate")]
 mod prediction;
@@ -58,7 +59,8 @@ pub use words::{KnownNumbers, Numbers, Value};
 
 /// The refusal of settings that the regression or the known start of the plant does not admit.
 pub(crate) fn refused(model: &Model, plant: &Plant, derivation: &Derivation) -> Option<Diagnostic> {
-    local::refused(model, derivation).or_else(|| known::refused(model, plant, derivation))
+    let at_estimate = local::refused(model, derivation).or_else(|| monotone::refused(model, derivation));
+    at_estimate.or_else(|| known::refused(model, plant, derivation))
 }
 
 impl DerivedSettings {
@@ -88,7 +90,8 @@ impl DerivedSettings {
             let settings = Settings::resolve(&model.observer, sizes, read, problems)?;
             let begun = Some(()).filter(|()| model.observer.extension.is_empty());
             let chi_0 = begun.and_then(|()| start(model, plant, derivation, shown)).unwrap_or(settings.chi_0);
-            let rebase = if regression.is_local { Some(Rebase::Samples(Rational::ONE)) } else { settings.rebase };
+            let rebase =
+                if regression.is_at_estimate() { Some(Rebase::Samples(Rational::ONE)) } else { settings.rebase };
             return Some(Self {
                 settings: Settings { chi_0, limits, rebase, ..settings },
                 #[cfg(feature = "simulate")]
@@ -97,7 +100,8 @@ impl DerivedSettings {
                 prediction: Prediction::None("gains do not say what sensors err by"),
             });
         }
-        let mut derived = derive::derive(model, plant, derivation, shown, problems)?;
+        let by_kind = if monotone::is_monotone(derivation) { monotone::derive } else { derive::derive };
+        let mut derived = by_kind(model, plant, derivation, shown, problems)?;
         derived.settings.limits = limits;
         Some(derived)
     }

@@ -43,7 +43,7 @@ pub(super) fn beginning(point: &Point, plant: &Plant, derivation: &Derivation) -
 fn near(known: &Point, plant: &Plant, derivation: &Derivation) -> Option<Vec<Rational>> {
     let inverse = derivation.left_inverse.result.as_ref()?;
     let mut left: Vec<Expr> = inverse.x.iter().map(|(_, formula)| *formula).collect();
-    let local = derivation.regression.result.as_ref().filter(|regression| regression.is_local);
+    let local = derivation.regression.result.as_ref().filter(|regression| regression.is_at_estimate());
     if let Some(regression) = local {
         let z: Vec<Expr> = plant.z.iter().map(|z| plant.arena.of_symbol(*z)).collect();
         let there = regression.with_extension(plant, &z);

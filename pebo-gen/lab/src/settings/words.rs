@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
+use pebo_cas::Rational;
 use pebo_design::model::Model;
 use pebo_design::plant::Plant;
 
 use super::kind::ObserverKind;
 use super::magnitude::Deviations;
+use super::monotone::UNWEIGHED;
 use super::prediction::Prediction;
 use super::shown::Shown;
 
@@ -70,6 +72,41 @@ impl KnownNumbers {
         (kind, rebased, adapts): (ObserverKind, bool, bool),
         [covariance, noise]: [&[f64]; 2],
     ) -> Self {
+        let filter = if deviations.is_local { "an extended Kalman filter" } else { "a Kalman filter" };
+        let observer = match (kind, rebased) {
+            (ObserverKind::Output, _) => format!("output form, {filter} of the transformed plant"),
+            (ObserverKind::Sampled, true) => format!("least squares of samples, {filter} of the transformed plant"),
+            (ObserverKind::Sampled, false) => "least squares of samples".to_owned(),
+            (ObserverKind::Filtered, _) => "least squares through a filter".to_owned(),
+        };
+        let observer =
+            if adapts { format!("{observer}, with as much of the disturbance as samples show") } else { observer };
+        let derived = [("covariance", coordinates(covariance)), ("process noise", coordinates(noise))];
+        Self::with(observer, plant, (model, shown), deviations, derived.into())
+    }
+
+    /// Those of a gradient, with its gain and normalisation.
+    pub(super) fn of_gradient(
+        plant: &Plant,
+        (model, shown): (&Model, &Shown),
+        deviations: &Deviations,
+        (gain, mu): (&[Rational], &Rational),
+    ) -> Self {
+        let gain: Vec<f64> = gain.iter().map(Rational::to_f64).collect();
+        let mu = Value { name: "mu".to_owned(), value: mu.to_f64(), unit: None };
+        let derived = [("gain", coordinates(&gain)), ("normalisation", vec![mu])];
+        let observer = "normalised gradient of samples, with the slopes at the estimate".to_owned();
+        let known = Self::with(observer, plant, (model, shown), deviations, derived.into());
+        Self { unpredicted: Some(UNWEIGHED.to_owned()), is_local: false, ..known }
+    }
+
+    fn with(
+        observer: String,
+        plant: &Plant,
+        (model, shown): (&Model, &Shown),
+        deviations: &Deviations,
+        derived: Vec<(&str, Vec<Value>)>,
+    ) -> Self {
         let arena = &plant.arena;
         let x: Vec<_> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<_> = plant.y.iter().map(|output| output.symbol).collect();
@@ -80,11 +117,6 @@ impl KnownNumbers {
                 unit: plant.units.get(symbol).map(|unit| format!("{unit}{per}")),
             };
             symbols.iter().zip(values).map(value).collect()
-        };
-        let coordinates = |values: &[f64]| -> Vec<Value> {
-            let value =
-                |(place, value): (usize, &f64)| Value { name: format!("z{}", place + 1), value: *value, unit: None };
-            values.iter().enumerate().map(value).collect()
         };
         let written = &model.observer;
         let lacks = |symbols: &[pebo_cas::Symbol], entries: &[pebo_design::model::Entry<_>]| {
@@ -100,13 +132,6 @@ impl KnownNumbers {
         let are_assumed = lacks(&y, &written.sensors);
         // A sensor that shows nothing of its noise has an assumed one.
         let are_shown = are_assumed && y.iter().all(|output| shown.deviations.contains_key(output));
-        let filter = if deviations.is_local { "an extended Kalman filter" } else { "a Kalman filter" };
-        let observer = match (kind, rebased) {
-            (ObserverKind::Output, _) => format!("output form, {filter} of the transformed plant"),
-            (ObserverKind::Sampled, true) => format!("least squares of samples, {filter} of the transformed plant"),
-            (ObserverKind::Sampled, false) => "least squares of samples".to_owned(),
-            (ObserverKind::Filtered, _) => "least squares through a filter".to_owned(),
-        };
         let delays = plant.y.iter().filter_map(|output| {
             let name = arena.name(output.symbol);
             let value = written.delay.of(&name)?.value.to_f64();
@@ -115,11 +140,7 @@ impl KnownNumbers {
         let delays: Vec<Value> = delays.collect();
         let silent = written.known().is_none_or(|(key, _)| key == "form");
         Self {
-            observer: if adapts {
-                format!("{observer}, with as much of the disturbance as samples show")
-            } else {
-                observer
-            },
+            observer,
             numbers: vec![Numbers {
                 recorded: are_shown,
                 ..numbers(Self::SENSORS, are_assumed && !are_shown, named(&y, &deviations.sensors, ""))
@@ -129,9 +150,8 @@ impl KnownNumbers {
             .chain([
                 numbers(Self::START, lacks(&x, &written.start), named(&x, &deviations.start, "")),
                 numbers(Self::DISTURBANCE, silent, drifts),
-                numbers("covariance", false, coordinates(covariance)),
-                numbers("process noise", false, coordinates(noise)),
             ])
+            .chain(derived.into_iter().map(|(what, values)| numbers(what, false, values)))
             .collect(),
             unpredicted: None,
             is_local: deviations.is_local,
@@ -146,4 +166,10 @@ impl KnownNumbers {
         };
         Self { unpredicted, ..self }
     }
+}
+
+/// The numbers of coordinates, by their names.
+fn coordinates(values: &[f64]) -> Vec<Value> {
+    let value = |(place, value): (usize, &f64)| Value { name: format!("z{}", place + 1), value: *value, unit: None };
+    values.iter().enumerate().map(value).collect()
 }

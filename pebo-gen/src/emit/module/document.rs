@@ -14,7 +14,7 @@ use crate::emit::definition::{
 };
 use pebo_cas::{Arena, Expr, Relation, Symbol};
 use pebo_design::analysis::{
-    Class, Derivation, EquationInZ, Excitation, Fundamental, Origin, Regression, RegressionKind, UnusedOutput,
+    AtEstimate, Class, Derivation, EquationInZ, Excitation, Fundamental, Origin, RegressionKind, UnusedOutput,
 };
 use pebo_design::plant::{Formula, Plant};
 use pebo_design::program::{Cost, StagedPrograms};
@@ -152,7 +152,11 @@ fn observer(plant: &Plant, definitions: &Definitions, abbreviations: &Abbreviati
             "z = xi + Psi theta".to_owned(),
         ],
     };
-    let near = if definitions.regression.is_local { ", to first order in theta" } else { "" };
+    let near = match definitions.regression.at_estimate {
+        Some(AtEstimate::Local) => ", to first order in theta",
+        Some(AtEstimate::Monotone) => ", slopes at the estimate",
+        None => "",
+    };
     laws.push(format!("{}{near}", equation(plant, definitions)));
     laws.push("x = phi_left(z, y)".to_owned());
     if !is_linear(arena, definitions) {
@@ -301,7 +305,7 @@ fn proofs(plant: &Plant, derivation: &Derivation, definitions: &Definitions) -> 
     } else {
         format!("{parameterisation}, {} unknowns", regression.eta.len())
     };
-    let near = if regression.is_local { [": ", Regression::LOCAL].concat() } else { String::new() };
+    let near = regression.meaning().map_or_else(String::new, |meaning| [": ", meaning].concat());
     lines.push(format!("- Regression: {kind}, {parameterisation}{near}."));
     if let Some(identifiability) = &derivation.identifiability.result {
         let mut line = match identifiability.kind {

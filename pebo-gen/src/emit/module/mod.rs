@@ -99,7 +99,7 @@ impl Module<'_> {
         });
         let own = own.map(|velocity| quote!(#precision impl #type_name { #velocity }));
         let paper = self.paper();
-        let is_local = self.definitions.regression.is_local;
+        let is_local = self.definitions.regression.is_at_estimate();
         let local = is_local.then(|| {
             quote!(
                 const LOCAL: bool = true;

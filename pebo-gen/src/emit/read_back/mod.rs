@@ -61,8 +61,8 @@ pub(super) fn confirm(
     if read.choices.get("INSTANTS").map(String::as_str) != definitions.has_instants().then_some(INSTANTS) {
         return Err(EmitError::Unreadable { code: "the equations that hold at every instant".to_owned() });
     }
-    if read.choices.get("LOCAL").map(String::as_str) != definitions.regression.is_local.then_some("true") {
-        return Err(EmitError::Unreadable { code: "whether the regression is local".to_owned() });
+    if read.choices.get("LOCAL").map(String::as_str) != definitions.regression.is_at_estimate().then_some("true") {
+        return Err(EmitError::Unreadable { code: "whether the slopes are those at the estimate".to_owned() });
     }
     if read.choices.get("RELATED").map(String::as_str) != definitions.has_transform().then_some("true") {
         return Err(EmitError::Unreadable { code: "whether the components of phi depend on one another".to_owned() });

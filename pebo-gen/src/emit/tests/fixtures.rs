@@ -156,7 +156,7 @@ impl Sketch {
                 witness: None,
             }),
             regression: proved(Regression {
-                is_local: false,
+                at_estimate: None,
                 kind: self.kind,
                 sources: (0..self.phi_0.len()).map(|row| vec![row]).collect(),
                 phi_0: formulas(self.phi_0),
@@ -190,6 +190,7 @@ impl Sketch {
             cascade_class: None,
             relation_form: None,
             local_regression: None,
+            monotone_regression: false,
             proposal: Proposal::default(),
             terms: BTreeMap::new(),
             conditions: Vec::new(),

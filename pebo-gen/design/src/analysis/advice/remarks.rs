@@ -21,7 +21,7 @@ impl Derivation {
     /// The components of the extension that a constant bias makes run away; none without a proved cascade, where there is
     /// no such component, or where the extension is moved to the estimate at each sample.
     pub fn drift(&self, plant: &Plant) -> Option<&Drift> {
-        if self.is_local() {
+        if self.at_estimate().is_some() {
             return None;
         }
         let found = || Drift::of(plant, self).filter(|drift| !drift.integrators.is_empty());
@@ -45,8 +45,8 @@ impl Derivation {
     pub fn can_rebase(&self, plant: &Plant) -> bool {
         *self.remarks.rebase.get_or_init(|| {
             let domain = plant.domain();
-            // A local one has its slopes where the extension is, and has to be moved.
-            if self.is_local() {
+            // One at the estimate has its slopes where the extension is, and has to be moved.
+            if self.at_estimate().is_some() {
                 return true;
             }
             let regression = self.regression.result.as_ref();

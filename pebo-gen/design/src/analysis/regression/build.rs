@@ -1,7 +1,7 @@
 //! The regression that equations make.
 //!
 //! In: equations `d/dt P(z, y) = R(z, y, u)`. Out: one regression of all, in theta itself where all are affine in z, else
-//! in functions of theta; or of first order in theta. It is static where no equation has a primitive, dynamic where each
+//! in functions of theta; or with the slopes at the estimate. It is static where no equation has a primitive, dynamic where each
 //! primitive is an output, else implicit: the filter is linear, so that an equation without a derivative goes through it
 //! as any other does.
 
@@ -12,7 +12,7 @@ use super::premises::Premises;
 use super::recovery::recoverable;
 use super::separation::{absorb_constants, separate};
 use super::steps::steps;
-use crate::analysis::design::{Regression, RegressionKind, Verdict};
+use crate::analysis::design::{AtEstimate, Regression, RegressionKind, Verdict};
 use crate::source::Diagnostic;
 use pebo_cas::forms::tidy::{proved_shortest, shortest_equal};
 use pebo_cas::tower::Obstacle;
@@ -47,12 +47,16 @@ pub(super) fn regression(
     Ok(with_unknowns_apart(premises, result))
 }
 
-/// The regression of the equations to first order in theta: each where the extension is z, with its slopes by theta there.
-pub(super) fn near_extension(premises: &Premises<'_>, equations: &[Equation]) -> Result<Regression, Obstruction> {
+/// The regression of the equations at the estimate: each where the extension is z, with its slopes by theta there.
+pub(super) fn at_estimate(
+    premises: &Premises<'_>,
+    equations: &[Equation],
+    sense: AtEstimate,
+) -> Result<Regression, Obstruction> {
     let (arena, plant) = (premises.arena(), premises.plant);
     let (kind, equations) = in_order(premises, equations);
     let theta = plant.theta.iter().map(|symbol| arena.of_symbol(*symbol)).collect();
-    let mut result = Regression { is_local: true, ..empty(premises, kind, &equations, (theta, None)) };
+    let mut result = Regression { at_estimate: Some(sense), ..empty(premises, kind, &equations, (theta, None)) };
     for equation in equations {
         // A primitive with an unknown would have a slope under the derivative, which moves with the estimate.
         if premises.is_hidden(equation.rate) || arena.depends_on(equation.primitive, &premises.unknown()) {
@@ -177,7 +181,7 @@ fn empty(
         primitive_1: Vec::new(),
         theta: theta.unwrap_or_else(itself),
         eta_symbols,
-        is_local: false,
+        at_estimate: None,
         eta,
         steps: Vec::new(),
         alternative: None,

@@ -12,37 +12,57 @@ use std::collections::BTreeSet;
 use super::equation::{Equation, outputs_of};
 use super::pool::Pool;
 use super::trial::Trial;
-use crate::analysis::design::Verdict;
+use crate::analysis::design::{AtEstimate, Verdict};
 use crate::plant::Formula;
 
 /// The local regression, if it identifies theta or proves that nothing does.
 pub(super) fn decided(pool: &Pool<'_>) -> Option<Trial> {
     let (premises, plant) = (&pool.premises, pool.premises.plant);
-    // As they are written: the noise of a sensor is then in its row alone.
-    let instant = |identity: &Formula| {
-        let in_z = premises.at_left_inverse(identity.expr).filter(|in_z| !premises.is_hidden(*in_z))?;
-        Some(Equation::instant(premises, in_z, outputs_of(plant, identity)))
-    };
-    let instants: Vec<Equation> = plant.identities.iter().filter_map(instant).collect();
-    let by_value = |output: &usize| plant.y[*output].value.is_some();
-    let values: BTreeSet<usize> =
-        instants.iter().flat_map(|equation| &equation.outputs).copied().filter(by_value).collect();
-    let is_known = |equation: &&Equation| equation.outputs.iter().all(|output| values.contains(output));
-    let trial = |rates: Vec<Equation>| {
-        let says_something = |equation: &Equation| premises.arena().depends_on(equation.rate, &premises.unknown());
-        let equations: Vec<Equation> = [rates, instants.clone()].concat().into_iter().filter(says_something).collect();
+    let trial = |equations: Vec<Equation>| {
         // Where all are linear, an exact regression has them.
         let is_local = !equations.iter().all(Equation::is_linear);
-        is_local.then(|| Trial::near_extension(premises, equations).ok()).flatten()
+        is_local.then(|| Trial::at_estimate(premises, equations, AtEstimate::Local).ok()).flatten()
     };
-    let first = trial(pool.unmoved().filter(|rate| !is_known(rate)).cloned().collect())?;
+    let first = trial(equations(pool, Rates::OfOthers))?;
     if first.is_identified() {
         return Some(first);
     }
     // A value says nothing of what moves its output, where samples of that output stand for states in the cascade.
-    let whole = trial(pool.unmoved().cloned().collect())?;
+    let whole = trial(equations(pool, Rates::OfAll))?;
     let has_rate = |output: usize| pool.rates.iter().any(|rate| rate.output == output && rate.equation.is_some());
-    let is_complete = (0..plant.y.len()).all(has_rate) && instants.len() == plant.identities.len();
+    let instants = instants(pool).count();
+    let is_complete = (0..plant.y.len()).all(has_rate) && instants == plant.identities.len();
     let is_settled = whole.is_identified() || is_complete && whole.identifiability.verdict == Verdict::Refuted;
     is_settled.then_some(whole)
+}
+
+/// The outputs whose rates are taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rates {
+    /// Those that are not given by value.
+    OfOthers,
+    /// All.
+    OfAll,
+}
+
+/// The identities and values of outputs as functions of z, and these rates, of which each says something of z.
+pub(super) fn equations(pool: &Pool<'_>, rates: Rates) -> Vec<Equation> {
+    let (arena, plant, unknown) = (pool.premises.arena(), pool.premises.plant, pool.premises.unknown());
+    let instants: Vec<Equation> = instants(pool).collect();
+    let by_value = |output: &usize| plant.y[*output].value.is_some();
+    let values: BTreeSet<usize> =
+        instants.iter().flat_map(|equation| &equation.outputs).copied().filter(by_value).collect();
+    let is_known = |equation: &Equation| equation.outputs.iter().all(|output| values.contains(output));
+    let taken = pool.unmoved().filter(|rate| rates == Rates::OfAll || !is_known(rate)).cloned();
+    taken.chain(instants.iter().cloned()).filter(|equation| arena.depends_on(equation.rate, &unknown)).collect()
+}
+
+/// The identities, and the values of outputs, as functions of z.
+fn instants<'a>(pool: &'a Pool<'_>) -> impl Iterator<Item = Equation> + 'a {
+    let (premises, plant) = (&pool.premises, pool.premises.plant);
+    // As they are written: the noise of a sensor is then in its row alone.
+    plant.identities.iter().filter_map(move |identity: &Formula| {
+        let in_z = premises.at_left_inverse(identity.expr).filter(|in_z| !premises.is_hidden(*in_z))?;
+        Some(Equation::instant(premises, in_z, outputs_of(plant, identity)))
+    })
 }

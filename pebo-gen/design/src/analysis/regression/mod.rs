@@ -3,8 +3,8 @@
 //! In: the plant and its proved cascade. Out: of the selections from the pool of the plant's equations the first that
 //! makes a regression which identifies the unknowns, with all outputs that say something of them; else the refusal that
 //! says what the pool lacks. Rates come first (`f_y = A(y, u) + B(y, u) phi`, or functions of theta), then relations at
-//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined. Where the model asks for it, all
-//! equations are taken to first order instead.
+//! every instant (Ortega et al. 2015, eqs. 16 and 28), then what can be combined. Without such a regression there may be
+//! one that is monotone in theta; where the model asks for it, all equations are taken to first order instead.
 
 mod affine_rate;
 mod build;
@@ -16,6 +16,7 @@ mod equation;
 mod forms;
 mod implicit;
 mod local;
+mod monotone;
 mod outputs;
 mod pool;
 mod premises;
@@ -75,6 +76,21 @@ fn prove_from(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
         return local.claims(found);
     }
     let mut tried = Tried::default();
+    if let Some(linear) = linear(&pool, &mut tried) {
+        return linear.claims(found);
+    }
+    // What a linear regression lacks, as the period of an angle, is worth more than one with fewer outputs.
+    let is_refused = |failure: &(Selection, Obstruction)| matches!(failure.1, Obstruction::Refused(..));
+    let is_beyond = !tried.failures.iter().any(is_refused);
+    match is_beyond.then(|| monotone::decided(&pool)).flatten() {
+        Some(monotone) => monotone.claims(found),
+        None => tried.conclude(&pool, found),
+    }
+}
+
+/// The first regression that is linear in functions of theta and identifies them; what was tried without success is noted.
+fn linear(pool: &Pool<'_>, tried: &mut Tried) -> Option<Trial> {
+    let premises = pool.premises;
     let (first, others) = selection::order(premises.plant);
     for (is_first, selection) in first.iter().map(|s| (true, *s)).chain(others.iter().map(|s| (false, *s))) {
         let is_failed = tried.failures.iter().any(|(failed, _)| *failed == selection);
@@ -84,20 +100,20 @@ fn prove_from(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
         if is_failed || is_first && tried.given.is_some() {
             continue;
         }
-        let equations = selection::equations(selection, &pool, tried.given.as_ref(), &tried.rest);
+        let equations = selection::equations(selection, pool, tried.given.as_ref(), &tried.rest);
         if equations.is_empty() {
             continue;
         }
         let trial = match Trial::of(&premises, equations) {
-            Ok(trial) if trial.is_identified() => outputs::completed(&pool, forms::preferred(&pool, trial)),
+            Ok(trial) if trial.is_identified() => outputs::completed(pool, forms::preferred(pool, trial)),
             Ok(trial) => trial,
             Err(obstruction) => {
                 tried.failures.push((selection, obstruction));
                 continue;
             }
         };
-        if trial.is_identified() && forms::is_chosen(&pool, &trial) {
-            return trial.claims(found);
+        if trial.is_identified() && forms::is_chosen(pool, &trial) {
+            return Some(trial);
         }
         match selection {
             (Source::More, _) => tried.strengthened = Some(trial),
@@ -105,7 +121,7 @@ fn prove_from(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
             _ => {}
         }
     }
-    tried.conclude(&pool, found)
+    None
 }
 
 impl Tried {

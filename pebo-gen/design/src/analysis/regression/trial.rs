@@ -4,7 +4,7 @@ use super::build::{self, Obstruction};
 use super::equation::Equation;
 use super::premises::Premises;
 use crate::analysis::conditions::where_valued;
-use crate::analysis::design::{Claim, Excitation, Identifiability, Regression, Verdict};
+use crate::analysis::design::{AtEstimate, Claim, Excitation, Identifiability, Regression, Verdict};
 use crate::analysis::limited::limited;
 use crate::analysis::{identifiability, permitted};
 use crate::source::Diagnostic;
@@ -43,9 +43,13 @@ impl Trial {
         Self::on(premises, equations, built, said)
     }
 
-    /// The regression of equations to first order in theta.
-    pub(super) fn near_extension(premises: &Premises<'_>, equations: Vec<Equation>) -> Result<Self, Obstruction> {
-        let built = build::near_extension(premises, &equations)?;
+    /// The regression of equations with their slopes at the estimate.
+    pub(super) fn at_estimate(
+        premises: &Premises<'_>,
+        equations: Vec<Equation>,
+        sense: AtEstimate,
+    ) -> Result<Self, Obstruction> {
+        let built = build::at_estimate(premises, &equations, sense)?;
         Self::on(premises, equations, built, Vec::new())
     }
 

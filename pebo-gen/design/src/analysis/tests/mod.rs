@@ -3,6 +3,7 @@
 mod cells;
 mod known;
 mod local;
+mod monotone;
 mod outputs;
 mod seldom;
 mod start;
