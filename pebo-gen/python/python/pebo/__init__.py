@@ -22,13 +22,16 @@ __all__ = [
     "Run",
     "__version__",
     "check",
+    "expression",
+    "formula",
+    "latex",
 ]
 
 
 def __getattr__(name: str) -> object:
     # SymPy is imported only by who uses it.
-    if name == "FormulaError":
-        from ._sympy import FormulaError
+    if name in ("FormulaError", "expression", "formula", "latex"):
+        from . import _sympy
 
-        return FormulaError
+        return getattr(_sympy, name)
     raise AttributeError(f"module 'pebo' has no attribute {name!r}")
