@@ -29,6 +29,9 @@ class Diagnostic:
 class PeboError(Exception):
     """A call without its result; the message is that of all its diagnostics."""
 
+    # As users write it, in a traceback too.
+    __module__ = "pebo"
+
     #: The reasons, in the order of their importance.
     diagnostics: Sequence[Diagnostic]
 
@@ -51,9 +54,13 @@ def _anew(kind: type[PeboError], message: str, diagnostics: Sequence[Diagnostic]
 class ModelError(PeboError, ValueError):
     """The model, its settings or a recording is malformed: nothing is proved or refuted."""
 
+    __module__ = "pebo"
+
 
 class RefusedError(PeboError):
     """The model was read, but the result cannot be had: a claim is refuted or undecided, or a run ended early."""
+
+    __module__ = "pebo"
 
 
 def found(answer: dict[str, Any]) -> list[Diagnostic]:

@@ -42,6 +42,8 @@ _INSTEAD = {
 class FormulaError(ValueError):
     """A SymPy expression that has no form in the language of model files."""
 
+    __module__ = "pebo"
+
 
 def formula(expr: Any, signals: Collection[str] = ()) -> str:
     """The formula of an expression, or of an inequality between expressions.
