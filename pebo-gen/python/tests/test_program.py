@@ -25,7 +25,7 @@ def test_its_exit_status_is_the_verdict(cuk, tmp_path):
     assert program("check", MODELS / "induction_motor.yaml", "--limit", "0.01").returncode == 1
     wrong = program("check", tmp_path / "none.yaml")
     assert wrong.returncode == 2 and "cannot read" in wrong.stderr and not wrong.stdout
-    assert program("chekc").returncode == 2
+    assert program("checks").returncode == 2
     module = subprocess.run([sys.executable, "-m", "pebo", "--version"], capture_output=True, text=True, check=True)
     assert module.stdout == program("--version").stdout
 
