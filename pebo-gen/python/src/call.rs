@@ -3,7 +3,7 @@
 //! In: bytes, and a task on the library. Out: the task's result, or the exception of an interrupt. Holds: the
 //! interpreter's lock is free while the library works.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::rc::Rc;
@@ -73,13 +73,16 @@ impl Call {
 fn within(limit: Option<Limit>, interrupt: &Rc<RefCell<Option<PyErr>>>) -> Request {
     let of_proof = limit.unwrap_or_default().watch();
     // The run begins when the proofs have ended.
-    let of_run: Cell<Option<Box<dyn Fn(Stage) -> ControlFlow<()>>>> = Cell::new(None);
+    let of_run = OnceCell::new();
     let (interrupt, looked) = (interrupt.clone(), Cell::new(Instant::now()));
     limit.unwrap_or_default().request().watch(move |stage| {
         if looked.get().elapsed() >= PATIENCE {
             looked.set(Instant::now());
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
-                interrupt.replace(Some(error));
+            match Python::try_attach(look) {
+                Some(Ok(())) => {}
+                Some(Err(error)) => drop(interrupt.replace(Some(error))),
+                // The interpreter ends, and nobody waits for the answer.
+                None => return ControlFlow::Break(()),
             }
         }
         if interrupt.borrow().is_some() {
@@ -89,9 +92,11 @@ fn within(limit: Option<Limit>, interrupt: &Rc<RefCell<Option<PyErr>>>) -> Reque
             return of_proof(stage);
         }
         let Some(limit) = limit else { return ControlFlow::Continue(()) };
-        let watch = of_run.take().unwrap_or_else(|| Box::new(limit.watch()));
-        let decided = watch(stage);
-        of_run.set(Some(watch));
-        decided
+        of_run.get_or_init(|| limit.watch())(stage)
     })
+}
+
+/// Looks for an interrupt, which is for the main thread alone.
+fn look(py: Python<'_>) -> PyResult<()> {
+    py.check_signals()
 }

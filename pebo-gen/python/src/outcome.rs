@@ -3,6 +3,7 @@
 //! In: an answer and its source. Out: JSON with every diagnostic rendered, and a table of numbers if there is one.
 
 use pebo_gen::Answer;
+use pebo_gen::simulate::replay::Replayed;
 use pebo_gen::source::{Colour, Source, render};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -44,7 +45,7 @@ impl Outcome {
             Some(ensemble) => ensemble.text(),
             None => run.summary.text(),
         });
-        let told = of_run.or_else(|| answer.replay.as_ref().map(|replay| replay.text()));
+        let told = of_run.or_else(|| answer.replay.as_ref().map(Replayed::text));
         let one = |diagnostic| render(std::slice::from_ref(diagnostic), source, Colour::Never);
         let rendered = answer.diagnostics.iter().map(one).collect();
         // Answers always serialise: strings, numbers, and maps with string keys.

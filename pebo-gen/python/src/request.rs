@@ -10,9 +10,10 @@ use std::path::PathBuf;
 use pebo_gen::emit::Scalar;
 use pebo_gen::simulate::{Ensemble, Overrides, Trace};
 use pebo_gen::source::nearest;
-use pebo_gen::{RunRequest, Tape};
+use pebo_gen::{Request, RunRequest, Tape};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 
 use super::call::Call;
 use super::outcome::Outcome;
@@ -24,7 +25,7 @@ type Model = (String, Vec<u8>);
 /// The verdict, with the sections of the page about the derivation.
 #[pyfunction]
 pub(super) fn check(py: Python<'_>, model: Model, settings: Vec<String>, limit: Option<f64>) -> PyResult<Outcome> {
-    Call::new(model, settings, limit)?.answer(py, |request| request.sections())
+    Call::new(model, settings, limit)?.answer(py, Request::sections)
 }
 
 /// The observer as Rust, with a crate around it for C projects if that is asked for.
@@ -47,7 +48,7 @@ pub(super) fn code(
 /// The page that explains the proof.
 #[pyfunction]
 pub(super) fn page(py: Python<'_>, model: Model, settings: Vec<String>, limit: Option<f64>) -> PyResult<Outcome> {
-    Call::new(model, settings, limit)?.answer(py, |request| request.page())
+    Call::new(model, settings, limit)?.answer(py, Request::page)
 }
 
 /// The script that proves the claims again.
@@ -58,7 +59,7 @@ pub(super) fn certificate(
     settings: Vec<String>,
     limit: Option<f64>,
 ) -> PyResult<Outcome> {
-    Call::new(model, settings, limit)?.answer(py, |request| request.certificate())
+    Call::new(model, settings, limit)?.answer(py, Request::certificate)
 }
 
 /// The closed loop, with the table of all signals; of many runs, that of the quantiles.
@@ -94,7 +95,7 @@ pub(super) fn simulate(
 #[derive(FromPyObject)]
 pub(super) enum Recording {
     Path(PathBuf),
-    Text(Vec<u8>),
+    Text(PyBackedBytes),
 }
 
 /// The observer over recorded data, with the table of its estimates; `name` is the recording's name in diagnostics.
