@@ -107,6 +107,18 @@ def test_what_cannot_be_written_says_so(expr, why):
         formula(expr)
 
 
+@pytest.mark.parametrize("text", ["", "a.real", "'a'", "a; b", "a b", "(", "1/", "(" * 3000 + "a" + ")" * 3000, "a[0]"])
+def test_no_formula_is_an_error_in_words(text):
+    with pytest.raises(pebo.FormulaError):
+        expression(text)
+
+
+def test_very_long_formulas_are_not_typeset():
+    inputs = [f"{'a' * 400}{n}" for n in range(60)]
+    result = pebo.check(x=["p"], y=["q"], u=inputs, f_x={"p": "+".join(inputs)}, f_y={"q": "p"}, phi=["p"])
+    assert result.accepted and result._repr_latex_() is None
+
+
 def test_formulas_of_an_answer_are_typeset(cuk):
     typeset = pebo.check(cuk)._repr_latex_()
     assert typeset.startswith("$$\\begin{aligned}") and r"\frac{1}{C_{4}}" in typeset

@@ -5,14 +5,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ._sympy import latex
+from ._sympy import FormulaError, latex
 
 if TYPE_CHECKING:
     from ._result import Result
 
 
-def typeset(result: Result) -> str:
-    """Transform, cascade, regression and left inverse, as far as they were derived, below one another."""
+#: Characters of formulas that a reader can take in; SymPy needs a second for so many.
+MOST = 20_000
+
+
+def typeset(result: Result) -> str | None:
+    """Transform, cascade, regression and left inverse, as far as they were derived, below one another.
+
+    None if the formulas are too long or too deeply nested to be set.
+    """
+    try:
+        return _typeset(result)
+    except (FormulaError, RecursionError):
+        return None
+
+
+def _typeset(result: Result) -> str | None:
+    claims = [result.cascade.get("h"), result.regression.get("phi_0"), result.regression.get("phi_1")]
+    if len(str([result.phi, *claims, result.left_inverse.get("x")])) > MOST:
+        return None
     lines = []
     if result.phi:
         lines.append(rf"z &= \varphi(x, y) = {_column(result.phi)}")

@@ -160,7 +160,7 @@ class Result:
         return f'<style>.pebo {{ {style} }} {frame}</style><div class="pebo">{head}{texts}{sections}</div>'
 
     def _repr_latex_(self) -> str | None:
-        """Transform, cascade, regression and left inverse; None without SymPy, which typesets them."""
+        """Transform, cascade, regression and left inverse; None without SymPy, or if they are very long."""
         try:
             from ._latex import typeset
         except ImportError:

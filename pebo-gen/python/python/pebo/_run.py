@@ -62,9 +62,9 @@ class Table(Mapping[str, "Column"]):
         raise NotImplementedError
 
     def settled(self, state: str, baseline: str | None = None) -> float | None:
-        """The time in seconds from which on the estimate of a state errs by less than 1 %; None if it does not settle.
+        """The time in seconds from which on an estimate errs by less than 1 % of the state's largest absolute value.
 
-        ``baseline`` names another observer of the same run.
+        None if it does not settle. ``baseline`` names another observer of the same run.
         """
         estimates = self.summary["estimates"]
         for one in estimates:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import re
+from tokenize import TokenError
 from collections.abc import Collection
 from typing import Any
 
@@ -171,10 +172,17 @@ class _Printer(CodePrinter):  # type: ignore[misc]
 
 # A name that is not the exponent of a number.
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*")
+# What formulas are made of: SymPy evaluates what it reads, and nothing else may get there.
+_FORMULA = re.compile(r"(?:[\w\s,()+\-*/^]|\.(?![^\W\d]))+")
 
 
 def expression(text: str) -> Any:
-    """A formula of an answer as a SymPy expression, whose symbols are real; its terms stand as they are written."""
+    """A formula of an answer as a SymPy expression, whose symbols are real; its terms stand as they are written.
+
+    Raises `FormulaError` for a text that is no formula, or is nested too deeply for Python.
+    """
+    if not _FORMULA.fullmatch(text):
+        raise FormulaError(f"no formula: `{text}`")
     names: dict[str, Any] = {}
 
     def placed(found: re.Match[str]) -> str:
@@ -189,7 +197,10 @@ def expression(text: str) -> Any:
         return place
 
     spelled = _NAME.sub(placed, text).replace("^", "**")
-    return parse_expr(spelled, local_dict=names, evaluate=False)
+    try:
+        return parse_expr(spelled, local_dict=names, evaluate=False)
+    except (ArithmeticError, MemoryError, RecursionError, SyntaxError, TokenError, TypeError, ValueError) as error:
+        raise FormulaError(f"SymPy cannot read `{text[:80]}`: {error}") from error
 
 
 def latex(text: str) -> str:
