@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
 import time
+from decimal import Decimal
+from fractions import Fraction
 
 import numpy
 import pytest
@@ -145,6 +148,18 @@ def test_numbers_keep_their_digits():
     values = {"a": 0.1, "b": 1e-5, "c": numpy.float64(0.3), "d": 2**70, "e": numpy.int32(4), "f": 1e300}
     model = pebo.check(x=["p"], y=["q"], f_x={"p": "-p"}, f_y={"q": "p"}, parameters=values).model
     assert "a: 0.1\n" in model and "b: 1e-05" in model and "c: 0.3\n" in model and f"d: {2**70}" in model
+
+
+def test_other_kinds_of_numbers_are_numbers():
+    values = {"a": Decimal("1E+5"), "b": Fraction(1, 8), "c": numpy.float32(0.5), "d": 1e-300, "e": Decimal("-0.10")}
+    result = pebo.check(x=["p"], y=["q"], f_x={"p": "-p"}, f_y={"q": "p"}, parameters=values)
+    assert result.accepted and "b: 0.125" in result.model
+
+
+def test_a_path_may_have_any_name(tmp_path, cuk):
+    for name in ("ä ö.yaml", "a{b}.yaml", os.fsdecode(b"\xff.yaml")):
+        (tmp_path / name).write_bytes(cuk.read_bytes())
+        assert pebo.check(tmp_path / name).accepted
 
 
 def test_a_notebook_shows_the_derivation(cuk):

@@ -282,7 +282,7 @@ class Result:
 
 
 def check(
-    model: Any = None,
+    model: str | os.PathLike[str] | None = None,
     /,
     *,
     set: Mapping[str, Any] | None = None,

@@ -14,18 +14,15 @@ import os
 import re
 import sys
 from collections.abc import Mapping
-from typing import Any, Union
+from typing import Any
 
 # Characters that YAML takes as they are, within brackets too.
 _PLAIN = re.compile(r"[A-Za-z0-9(][A-Za-z0-9_+\-*/^() .]*")
 # What YAML would read as something else than the text, or as nothing.
 _OTHER = re.compile(r"(true|false|yes|no|on|off|null|~)?", re.IGNORECASE)
 
-#: A model file by its path, or its text.
-Model = Union[str, "os.PathLike[str]"]
 
-
-def read(model: Model | None, keys: Mapping[str, Any]) -> tuple[str, bytes]:
+def read(model: str | os.PathLike[str] | None, keys: Mapping[str, Any]) -> tuple[str, bytes]:
     """The name and the text of a model: of a file by its path, of a text, or of the keys of a model file.
 
     A ``str`` is a text if it has a line break or begins with ``{``, and a path otherwise.
@@ -39,9 +36,8 @@ def read(model: Model | None, keys: Mapping[str, Any]) -> tuple[str, bytes]:
         return "model.yaml", model.encode()
     if not isinstance(model, (str, os.PathLike)):
         raise TypeError(f"a model is a path, a text, or keys by their names, and not {type(model).__name__}")
-    path = os.fspath(model)
-    with open(path, "rb") as file:
-        return path, file.read()
+    with open(model, "rb") as file:
+        return os.fsencode(model).decode(errors="replace"), file.read()
 
 
 def text(keys: Mapping[str, Any]) -> str:
@@ -85,15 +81,15 @@ class _Writer:
 
     def flow(self, value: Any) -> str:
         """A value on one line: maps in braces, lists and matrices in brackets."""
+        # Matrices of SymPy, arrays and numbers of NumPy.
+        if hasattr(value, "tolist"):
+            value = value.tolist()
         if value is None:
             return "null"
         if isinstance(value, bool):
             return "true" if value else "false"
         if isinstance(value, Mapping):
             return "{" + ", ".join(f"{self.name(name)}: {self.flow(inner)}" for name, inner in value.items()) + "}"
-        # Matrices of SymPy, arrays and numbers of NumPy.
-        if hasattr(value, "tolist"):
-            value = value.tolist()
         if isinstance(value, (list, tuple)):
             return "[" + ", ".join(self.flow(part) for inner in value for part in _parts(inner)) + "]"
         return _quoted(self._formula(value))
