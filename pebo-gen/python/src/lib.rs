@@ -4,10 +4,10 @@
 //! pebo (Python) -> call (source, limit, interrupts) -> pebo-gen -> JSON and columns of numbers -> pebo (Python)
 //! ```
 //!
-//! In: a model as bytes, settings, a limit. Out: the library's answer as it serialises, with its diagnostics rendered; of
-//! a run the table of its signals too. The package `pebo` around it, in `python/`, makes texts of keywords, objects of
-//! the JSON and `NumPy` arrays of the columns; all facts are the library's. Calculations release the interpreter's lock and
-//! end at Ctrl-C.
+//! In: a model as bytes, settings, a limit. Out: the library's answer as it serialises, with its diagnostics rendered;
+//! of a run the table of its signals too. The package `pebo` around it, in `python/`, makes texts of keywords, objects
+//! of the JSON and `NumPy` arrays of the columns; all facts are the library's. Calculations release the interpreter's
+//! lock and end at Ctrl-C.
 
 mod call;
 mod outcome;

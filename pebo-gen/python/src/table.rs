@@ -1,7 +1,8 @@
 //! The tables that the library writes as CSV, as numbers.
 //!
 //! In: CSV of the library, at once or in parts. Out: the columns' names, and the numbers row by row, NaN for a cell
-//! without one. Holds: they are the numbers that were written, which are as long as it takes to read the same ones back.
+//! without one. Holds: they are the numbers that were written, which are as long as it takes to read the same ones
+//! back.
 
 use std::io::{self, Write};
 
