@@ -16,6 +16,8 @@ mod builder;
 mod c_face;
 #[cfg(feature = "answer")]
 mod certificate;
+#[cfg(all(feature = "cli", feature = "simulate"))]
+pub mod cli;
 mod derived;
 pub mod emit;
 #[cfg(feature = "answer")]

@@ -1,9 +1,7 @@
-//! The command line: files, colour, progress and exit codes; everything else is the library's.
-
-mod cli;
+//! The program: the library's command line with the arguments of the process.
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    ExitCode::from(pebo_gen::cli::run(std::env::args_os()) as u8)
 }

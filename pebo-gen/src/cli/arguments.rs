@@ -1,5 +1,6 @@
 //! The arguments of the command line.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -7,8 +8,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand, ValueEnum};
-use pebo_cas::Budget;
-use pebo_gen::emit::Scalar;
+
+use crate::emit::Scalar;
+
+use super::budget::Limit;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -45,11 +48,11 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// The arguments of the process, or what clap has to say instead.
+    /// The arguments of a call, the first of which is the program's name, or what clap has to say instead.
     ///
     /// `--limit` may stand before a command and behind it; what belongs to the writing of code may not.
-    pub(super) fn of_process() -> Result<Self, clap::Error> {
-        let matches = Self::command().try_get_matches()?;
+    pub(super) fn of(call: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let matches = Self::command().try_get_matches_from(call)?;
         if let Some(command) = matches.subcommand_name() {
             let given = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
             if let Some(id) = ["output", "c", "scalar"].into_iter().find(given) {
@@ -61,23 +64,12 @@ impl Arguments {
     }
 }
 
-/// Seconds: a positive number.
-#[derive(Clone, Copy)]
-pub(super) struct Limit(pub(super) f64);
-
 impl FromStr for Limit {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let seconds: f64 = text.parse().map_err(|_| "a number of seconds is expected, as 60 or 0.5")?;
-        // Beyond the largest value of a clock there is no visible difference.
-        if seconds > 0.0 { Ok(Self(seconds.min(1e9))) } else { Err("the limit must be positive") }
-    }
-}
-
-impl Default for Limit {
-    fn default() -> Self {
-        Self(Budget::SECONDS)
+        Self::of_seconds(seconds)
     }
 }
 

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use pebo_gen::Standing;
+use crate::Standing;
 
-use super::arguments::{CertificateOptions, Limit};
+use super::arguments::CertificateOptions;
+use super::budget::Limit;
 use super::{files, terminal};
 
 pub(super) fn run(options: &CertificateOptions, limit: Limit) -> Standing {

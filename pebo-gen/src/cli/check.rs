@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use pebo_gen::Standing;
-use pebo_gen::source::Diagnostic;
+use crate::Standing;
+use crate::source::Diagnostic;
 
-use super::arguments::{CheckOptions, Format, Limit};
+use super::arguments::{CheckOptions, Format};
+use super::budget::Limit;
 use super::{files, standard, terminal};
 
 pub(super) fn run(options: &CheckOptions, limit: Limit) -> Standing {

@@ -1,7 +1,7 @@
 //! `pebo-gen explain`: the explanation of a diagnostic.
 
-use pebo_gen::Standing;
-use pebo_gen::source::{Code, nearest};
+use crate::Standing;
+use crate::source::{Code, nearest};
 
 use super::arguments::ExplainOptions;
 use super::{standard, terminal};

@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::{BufWriter, Read as _, Seek as _, Stdout, Write};
 use std::path::{Path, PathBuf};
 
-use pebo_gen::analysis::Class;
-use pebo_gen::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
-use pebo_gen::{Answer, Request, Solution, Tape};
+use crate::analysis::Class;
+use crate::source::{Code, Diagnostic, SIZE_LIMIT, Source, Span};
+use crate::{Answer, Request, Solution, Tape};
 use tempfile::NamedTempFile;
 
 use super::standard::{self, reason};
@@ -22,7 +22,7 @@ pub(super) fn answer_with(path: &Path, settings: &[String], request: Request) ->
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read_with(path, settings) {
         Ok(source) => {
-            let answer = pebo_gen::answer(&source, &request.named(stem));
+            let answer = crate::answer(&source, &request.named(stem));
             (source, answer)
         }
         Err(unread) => {
@@ -38,7 +38,7 @@ pub(super) fn solve(path: &Path, class: Option<Class>, request: Request) -> (Sou
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read(path) {
         Ok(source) => {
-            let solution = pebo_gen::solve(&source, class, &request.named(stem));
+            let solution = crate::solve(&source, class, &request.named(stem));
             (source, solution)
         }
         Err(unread) => {
@@ -55,7 +55,7 @@ pub(super) fn replay(path: &Path, settings: &[String], request: Request, tape: T
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match read_with(path, settings) {
         Ok(source) => {
-            let answer = pebo_gen::replay(&source, &request.named(stem), tape);
+            let answer = crate::replay(&source, &request.named(stem), tape);
             (source, answer)
         }
         Err(unread) => {

@@ -3,11 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::Standing;
+use crate::source::nearest;
 use clap::CommandFactory as _;
-use pebo_gen::Standing;
-use pebo_gen::source::nearest;
 
-use super::arguments::{Arguments, GenerateOptions, Limit};
+use super::arguments::{Arguments, GenerateOptions};
+use super::budget::Limit;
 use super::{files, terminal};
 
 pub(super) fn run(options: &GenerateOptions, limit: Limit) -> Standing {

@@ -1,7 +1,7 @@
 //! Descriptions of the command line for shells, for `man` and for programs.
 
+use crate::Standing;
 use clap::CommandFactory as _;
-use pebo_gen::Standing;
 
 use super::arguments::{Arguments, CompletionsOptions, SchemaName, SchemaOptions};
 use super::standard;
@@ -22,8 +22,8 @@ pub(super) fn page() -> Standing {
 
 pub(super) fn schema(options: &SchemaOptions) -> Standing {
     match options.of {
-        SchemaName::Check => standard::print(pebo_gen::report::CHECK_SCHEMA.as_bytes()),
-        SchemaName::Solve => standard::print(pebo_gen::report::SOLVE_SCHEMA.as_bytes()),
-        SchemaName::Model => standard::print(pebo_gen::model::json_schema().as_bytes()),
+        SchemaName::Check => standard::print(crate::report::CHECK_SCHEMA.as_bytes()),
+        SchemaName::Solve => standard::print(crate::report::SOLVE_SCHEMA.as_bytes()),
+        SchemaName::Model => standard::print(crate::model::json_schema().as_bytes()),
     }
 }

@@ -6,10 +6,10 @@ use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
+use crate::{Request, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
-use pebo_gen::{Request, Stage};
 
-use super::arguments::Limit;
+use super::budget::Limit;
 
 /// Runs with fewer samples end before a progress bar would be visible.
 const LONG_RUN: u64 = 200_000;

@@ -6,12 +6,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use pebo_gen::analysis::Outcome;
-use pebo_gen::simulate::replay::FittedNumbers;
-use pebo_gen::source::{Code, Diagnostic, Source, Span};
-use pebo_gen::{Answer, Standing, Tape};
+use crate::analysis::Outcome;
+use crate::simulate::replay::FittedNumbers;
+use crate::source::{Code, Diagnostic, Source, Span};
+use crate::{Answer, Standing, Tape};
 
-use super::arguments::{Limit, ReplayOptions};
+use super::arguments::ReplayOptions;
+use super::budget::Limit;
 use super::{files, progress, standard, terminal};
 
 pub(super) fn run(options: &ReplayOptions, limit: Option<Limit>) -> Standing {
@@ -129,7 +130,7 @@ fn fitted(
         Some(most) if begun.elapsed() > most => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     };
-    pebo_gen::fitted(&source, &limit.unwrap_or_default().request(), (rows, sought), &mut watch).map_err(|found| {
+    crate::fitted(&source, &limit.unwrap_or_default().request(), (rows, sought), &mut watch).map_err(|found| {
         terminal::report(&found, &source);
         Standing::Malformed
     })

@@ -4,9 +4,10 @@
 
 use std::path::Path;
 
-use pebo_gen::Standing;
+use crate::Standing;
 
-use super::arguments::{Limit, ReportOptions};
+use super::arguments::ReportOptions;
+use super::budget::Limit;
 use super::{files, progress, terminal};
 
 pub(super) fn run(options: &ReportOptions, limit: Option<Limit>) -> Standing {

@@ -1,11 +1,12 @@
 //! `pebo-gen simulate`: runs the closed loop that the model file describes.
 
-use pebo_gen::analysis::Outcome;
-use pebo_gen::simulate::{Ensemble, Overrides, Trace};
-use pebo_gen::source::Source;
-use pebo_gen::{RunRequest, Standing};
+use crate::analysis::Outcome;
+use crate::simulate::{Ensemble, Overrides, Trace};
+use crate::source::Source;
+use crate::{RunRequest, Standing};
 
-use super::arguments::{Limit, SimulateOptions};
+use super::arguments::SimulateOptions;
+use super::budget::Limit;
 use super::{files, progress, standard, terminal};
 
 pub(super) fn run(options: &SimulateOptions, limit: Option<Limit>) -> Standing {

@@ -5,12 +5,13 @@ use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
+use crate::analysis::Class;
+use crate::source::{Code, Diagnostic, Source, Span};
+use crate::{Stage, Standing};
 use indicatif::ProgressBar;
-use pebo_gen::analysis::Class;
-use pebo_gen::source::{Code, Diagnostic, Source, Span};
-use pebo_gen::{Stage, Standing};
 
-use super::arguments::{Format, Limit, SolveOptions};
+use super::arguments::{Format, SolveOptions};
+use super::budget::Limit;
 use super::{files, standard, terminal};
 
 /// A shorter search shows no progress.

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write as _};
 
-use pebo_gen::Standing;
-use pebo_gen::source::{Code, Diagnostic, Source, Span};
+use crate::Standing;
+use crate::source::{Code, Diagnostic, Source, Span};
 
 use super::terminal;
 

@@ -2,8 +2,8 @@
 
 use std::io::Write as _;
 
+use crate::source::{Colour, Diagnostic, Source, render_within};
 use anstream::ColorChoice;
-use pebo_gen::source::{Colour, Diagnostic, Source, render_within};
 
 /// Writes diagnostics to standard error.
 pub(super) fn report(diagnostics: &[Diagnostic], source: &Source) {

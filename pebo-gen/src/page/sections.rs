@@ -26,6 +26,11 @@ pub struct Section {
     pub places: Vec<Span>,
 }
 
+impl Section {
+    /// The style sheet of the page that it is a section of.
+    pub const STYLE: &str = super::STYLE;
+}
+
 /// The sections in the order of the page: plant, transform, the four claims, conditions with remarks, and the code if
 /// there is any.
 pub(crate) fn sections(subject: &Subject<'_>) -> Vec<Section> {

@@ -187,6 +187,8 @@ impl Run {
                 "csv" => self.recording(&block),
                 "toml" => self.dependencies(&block),
                 "text" => self.file(&block),
+                // The tests of the wheel do.
+                "pycon" => {}
                 _ => self.complain(&block, "a block of no kind that is known"),
             }
         }

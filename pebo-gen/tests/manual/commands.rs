@@ -7,6 +7,7 @@ use std::process::Command;
 pub(super) const BY_HAND: &[&str] = &[
     "cargo install --path pebo-gen",
     "cargo install mdbook",
+    "pip install ./pebo-gen/python",
     "mdbook serve docs",
     // By `docs/playground/test` in CI.
     "docs/build",

@@ -14,6 +14,7 @@
 //! | `rust` | a part of a program | code that is compiled has it |
 //! | `toml` | dependencies of a crate beside a checkout named `pebo` | Cargo resolves them |
 //! | `c` | a part of a C program or of a header | a command of the page wrote a file that has it |
+//! | `pycon` | a session of Python with its output | `pebo-gen/python/tests/test_manual.py` runs it |
 //! | `csv` | a part of a recording | a recording below models/ has it |
 //! | `text` | a diagram or formulas | nothing |
 //! | `text PATH` | a file of the project | it is that file |
