@@ -4,15 +4,17 @@
 //! inverse of another transform, or with the matrices of the transform under the key of its class; all else is as it
 //! was. None where the result would not read as meant: the text is read again.
 
-use pebo_design::model::Model;
-use pebo_design::plant::{Plant, TransformOrigin};
-use pebo_design::search;
+use pebo_design::analysis::AtEstimate;
+use pebo_design::model::{Model, RegressionForm};
+use pebo_design::plant::TransformOrigin;
+use pebo_design::search::{self, Candidate};
 use pebo_design::source::Source;
 
 use super::framed::{self, quoted};
 
-/// The text with the transform of this plant.
-pub(super) fn filled(source: &Source, model: &Model, plant: &Plant) -> Option<String> {
+/// The text with this transform, and the form of its regression, where that is one that a given transform has to ask for.
+pub(super) fn filled(source: &Source, model: &Model, candidate: &Candidate) -> Option<String> {
+    let plant = &candidate.plant;
     // The author's own transform of the class is kept, and coils have none to write.
     let blocks = model.class.as_ref().and_then(|class| search::blocks(plant, class.name()));
     let written = blocks.is_none() || model.class.as_ref().is_some_and(framed::is_given);
@@ -27,6 +29,10 @@ pub(super) fn filled(source: &Source, model: &Model, plant: &Plant) -> Option<St
         None => {
             let phi: Vec<String> = plant.transform().iter().map(|e| plant.arena.print(*e)).collect();
             with_components(&mut lines, &phi)?;
+            if candidate.derivation.at_estimate() == Some(AtEstimate::Monotone) && model.regression_form.is_none() {
+                let phi = section(&lines, "phi")?;
+                lines.insert(phi.start, format!("regression: {}\n", RegressionForm::Monotone.name()));
+            }
         }
         Some(class) => {
             let section = section(&lines, class.name())?;

@@ -62,7 +62,7 @@ pub fn solve(source: &Source, class: Option<Class>, request: &Request) -> Soluti
     let search = search::solve(&plant, class.or(plant.cascade_class));
     let best = search.candidates.first().filter(|_| search.verdict == SearchVerdict::Found);
     let texts: Vec<Option<String>> =
-        search.candidates.iter().map(|candidate| filled(source, &model, &candidate.plant)).collect();
+        search.candidates.iter().map(|candidate| filled(source, &model, candidate)).collect();
     Solution {
         standing: if best.is_some() { Standing::Accepted } else { Standing::Refused },
         report: SearchReport::of(&plant, &search),

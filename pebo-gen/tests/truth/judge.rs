@@ -26,6 +26,8 @@ struct Claims {
     lambda: Option<Vec<Vec<Formula>>>,
     phi_left: Vec<(String, Formula)>,
     kind: String,
+    /// The slopes are those at the estimate, in the place of the extension.
+    is_monotone: bool,
     phi_0: Vec<Formula>,
     phi_1: Vec<Vec<Formula>>,
     primitive_0: Vec<Formula>,
@@ -53,6 +55,7 @@ impl Claims {
                 .filter_map(|(name, formula)| Some((name.clone(), Formula::read(formula.as_str()?))))
                 .collect(),
             kind: regression["kind"].as_str().unwrap_or_default().to_owned(),
+            is_monotone: regression["parameterisation"] == "monotone",
             phi_0: list(&regression["phi_0"]),
             phi_1: rows(&regression["phi_1"]),
             primitive_0: list(&regression["primitive_0"]),
@@ -233,7 +236,11 @@ impl<'a> DomainPoint<'a> {
     /// The regression and the way back to theta, with an extension anywhere.
     fn regression(&mut self, rows: &[usize], draw: &mut Draw) {
         let claims = self.claims;
-        let theta: Vec<f64> = self.z.iter().map(|_| draw.value()).collect();
+        let mut theta: Vec<f64> = self.z.iter().map(|_| draw.value()).collect();
+        if claims.is_monotone {
+            self.monotone(&theta, draw);
+            theta.fill(0.0);
+        }
         self.extend(&theta, draw);
         let mut at_theta = self.values.clone();
         at_theta.extend((1..).zip(&theta).map(|(i, theta)| (format!("theta{i}"), (*theta, 0.0))));
@@ -267,6 +274,25 @@ impl<'a> DomainPoint<'a> {
             self.check(&format!("theta{}", i + 1), claimed, still(theta[i]));
         }
         self.anywhere(draw);
+    }
+
+    /// The error of each equation at an estimate has the sign of its slope there times the error of the estimate: from all
+    /// of these a step along the gradient goes towards z.
+    fn monotone(&mut self, theta: &[f64], draw: &mut Draw) {
+        let claims = self.claims;
+        self.extend(&vec![0.0; theta.len()], draw);
+        let at_z: Vec<f64> = claims.phi_0.iter().map(|known| known.at(&self.values).value).collect();
+        self.extend(theta, draw);
+        for (row, (known, factors)) in claims.phi_0.iter().zip(&claims.phi_1).enumerate() {
+            let error = at_z[row] - known.at(&self.values).value;
+            let along: f64 =
+                all(factors, &self.values).iter().zip(theta).map(|(slope, theta)| slope.value * theta).sum();
+            // Of a static equation the known side is on the left.
+            let error = if claims.kind == "static" { -error } else { error };
+            if error * along < -TOLERANCE * error.abs().max(along.abs()) {
+                self.found.push(format!("row {} is not monotone: {error}, {along}; {}", row + 1, self.place));
+            }
+        }
     }
 
     /// An extension may have run anywhere: the regression has a value all the same.

@@ -154,6 +154,7 @@ pub(crate) fn model(seed: u64) -> GeneratedModel {
         &"not one-to-one",
         &"functions of theta",
         &"nonlinear",
+        &"monotone",
         &"never",
         &"identity",
         &"generalised",
@@ -208,7 +209,7 @@ impl Recipe {
 
     fn transform(&mut self) {
         // With rates in functions of theta the state itself is taken: its functions are those of the table.
-        let plain = matches!(self.kind, "functions of theta" | "generalised" | "nonlinear");
+        let plain = matches!(self.kind, "functions of theta" | "generalised" | "nonlinear" | "monotone");
         for i in 0..self.states {
             let x = format!("x{}", i + 1);
             let (g, slope, domain) = match self.kind {
@@ -241,7 +242,12 @@ impl Recipe {
             let known = self.pick(KNOWN);
             let (factor, of) = (self.pick(NEVER_ZERO).0, self.output());
             let mut rate = format!("{known} + {}*({})", at(factor, &of), self.parts[i].text);
-            if i > 0 && self.draw.one_in(2) && self.kind != "nonlinear" && self.kind != "never" {
+            if i > 0
+                && self.draw.one_in(2)
+                && self.kind != "nonlinear"
+                && self.kind != "monotone"
+                && self.kind != "never"
+            {
                 let factor = at(self.pick(SOMEWHERE_ZERO).0, "u");
                 rate = format!("{rate} - {factor}*({})", self.parts[i - 1].text);
             }
@@ -270,6 +276,10 @@ impl Recipe {
                 self.truth = Truth::Fails;
                 let functions =
                     ["1/(1 + (@)^2)", "exp(-(@)^2)", "tanh(@)", "atan(@)", "log(1 + (@)^2)", "abs(@)", "sat(@)"];
+                Some(within(self.pick(&functions)))
+            }
+            ("monotone", _) => {
+                let functions = ["tanh(@)", "atan(@)", "(@) + log(1 + (@)^2)/2", "(u^2 + 1)*atan(@)", "sin(u)*tanh(@)"];
                 Some(within(self.pick(&functions)))
             }
             // The component is in no output at all.
@@ -339,6 +349,9 @@ impl Recipe {
         }
         if self.kind == "unmeasured signal" {
             more += "w: [d]\n";
+        }
+        if self.kind == "monotone" {
+            more += "regression: monotone\n";
         }
         if !self.assume.is_empty() {
             more = format!("{more}assume: [{}]\n", self.assume.join(", "));

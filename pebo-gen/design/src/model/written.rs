@@ -91,12 +91,31 @@ choices! {
         Static = "static",
         /// Such a relation under the derivative, where constants vanish.
         Differentiated = "differentiated",
+        /// Equations that are monotone in one unknown each, with their slopes at the estimate, where none are linear.
+        Monotone = "monotone",
         /// All equations as they are, to first order at the estimate.
         Local = "local",
     }
 }
 
 impl Model {
+    /// What the model's form of a regression is, of some forms, with its place.
+    pub(crate) fn asks_for<T>(&self, of: impl FnOnce(RegressionForm) -> Option<T>) -> Option<(T, Span)> {
+        let form = self.regression_form.as_ref()?;
+        Some((of(form.value)?, form.span))
+    }
+
+    /// The place where it admits a regression to first order, if it does.
+    pub(crate) fn admits_local(&self) -> Option<Span> {
+        self.asks_for(|form| (form == RegressionForm::Local).then_some(())).map(|((), span)| span)
+    }
+
+    /// True if it admits a monotone regression: it asks for one, or leaves the transform open and names no form.
+    pub(crate) fn admits_monotone(&self) -> bool {
+        let form = self.regression_form.as_ref();
+        form.map_or(self.phi.is_empty(), |form| form.value == RegressionForm::Monotone)
+    }
+
     /// The model with the entries of `f_x`, `f_y`, `g_y` and `phi_left` in the order of their states, and definitions
     /// after the ones that they use.
     #[must_use]

@@ -38,7 +38,8 @@ pub struct Plant {
     pub relation_form: Option<(RelationForm, Span)>,
     /// The place where a regression to first order is admitted, if it is.
     pub local_regression: Option<Span>,
-    /// True if a regression that is monotone in theta is admitted where none is linear in functions of it.
+    /// True if a regression that is monotone in theta is admitted where none is linear in functions of it: the model asks for
+    /// it, or for no transform and no regression.
     pub monotone_regression: bool,
     /// Constants of the plant.
     pub parameters: Vec<Parameter>,
@@ -145,7 +146,7 @@ impl RelationForm {
         match form {
             RegressionForm::Static => Some(Self::Static),
             RegressionForm::Differentiated => Some(Self::Differentiated),
-            RegressionForm::Local => None,
+            RegressionForm::Monotone | RegressionForm::Local => None,
         }
     }
 

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use crate::model::{self, Comparison, Entry, Model, Spanned};
-use crate::source::{Code, Diagnostic, Diagnostics, Span};
+use crate::source::{Code, Diagnostic, Diagnostics};
 use pebo_cas::graph::conditions::Regularity;
 use pebo_cas::{Arena, Budget, Expr, Rational, Relation as Compared, Symbol};
 
@@ -115,9 +115,9 @@ impl Plant {
             reference: model.reference.as_ref().map(|r| r.value.clone()),
             class,
             cascade_class: model.cascade_class.as_ref().map(|class| class.value),
-            relation_form: regression_of(model).ok(),
-            local_regression: regression_of(model).err().flatten(),
-            monotone_regression: true,
+            relation_form: model.asks_for(RelationForm::of),
+            local_regression: model.admits_local(),
+            monotone_regression: model.admits_monotone(),
             proposal,
             start: start_of(&arena, model, &parameters, &outputs),
             parameters,
@@ -146,12 +146,6 @@ impl Plant {
             arena,
         })
     }
-}
-
-/// The form of a relation that a model asks for; else the place where it admits a regression to first order, if it does.
-fn regression_of(model: &Model) -> Result<(RelationForm, Span), Option<Span>> {
-    let form = model.regression_form.as_ref().ok_or(None)?;
-    RelationForm::of(form.value).map(|relation| (relation, form.span)).ok_or(Some(form.span))
 }
 
 /// The names of a model with their meanings: a symbol, zero for a parameter that is given as zero, or a definition.

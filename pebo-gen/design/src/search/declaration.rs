@@ -37,6 +37,8 @@ pub enum Declaration {
     Assumed(Vec<Expr>),
     /// No class of cascade is asked for.
     AnyClass,
+    /// The regression may be monotone in the unknowns.
+    Monotone,
     /// The regression may be one to first order.
     Local,
     /// These states are left out: no output depends on them.
@@ -67,6 +69,7 @@ impl Declaration {
                 format!("`angles: {{{}}}`", listed(angles.iter().map(entry).collect()))
             }
             Self::AnyClass => "no `class`".to_owned(),
+            Self::Monotone => "`regression: monotone`".to_owned(),
             Self::Local => "`regression: local`".to_owned(),
             Self::Without(states) => {
                 let names: Vec<String> = states.iter().map(|state| format!("`{}`", arena.name(*state))).collect();
@@ -108,6 +111,10 @@ impl Declaration {
                 format!("measure `{state}` too: write {}, and the rate of `{state}` under `f_y`", self.lines(plant))
             }
             Self::AnyClass => "leave out `class`".to_owned(),
+            Self::Monotone => {
+                "write `regression: monotone`: a gradient then leads to the state from every start within the assumptions"
+                    .to_owned()
+            }
             Self::Local => {
                 "write `regression: local`: estimates then converge from a neighbourhood of the state, whose \
                             size no proof gives"
@@ -130,6 +137,7 @@ impl Declaration {
             Self::Assumed(positive) => positive.iter().map(|expr| format!("{} > 0", arena.print(*expr))).collect(),
             Self::Angles(_)
             | Self::AnyClass
+            | Self::Monotone
             | Self::Local
             | Self::Without(_)
             | Self::Unmeasured(_)
@@ -166,7 +174,6 @@ pub(super) fn helpful(
         .or_else(|| with_smooth_formulas(problem, class, accepted))
         .or_else(|| with_angles(problem, class, accepted))
         .or_else(|| with_bounds(problem, class, accepted))
-        .or_else(|| with_monotone_rates(problem))
         .or_else(|| with_any_class(problem, class, accepted))
 }
 
@@ -197,7 +204,8 @@ fn with_smooth_formulas(
     let is_open =
         |expr: &Expr| arena.depends_on(*expr, &hidden) && ![*expr, arena.neg(*expr)].into_iter().any(is_signed);
     let dividers = arena.dividers(&plant.rates().into_values().chain(values).collect::<Vec<Expr>>());
-    let walls: Vec<Expr> = BTreeSet::from_iter(dividers.into_iter().filter(is_open)).into_iter().collect();
+    let walls: BTreeSet<Expr> = dividers.into_iter().filter(is_open).collect();
+    let walls: Vec<Expr> = walls.into_iter().collect();
     let sides = match walls[..] {
         [] => return None,
         [wall] => vec![vec![wall], vec![arena.neg(wall)]],
@@ -324,7 +332,7 @@ pub(super) fn unseen(plant: &Plant) -> Vec<Symbol> {
 }
 
 /// The states of the plant in which outputs are monotone in them: where a factor of a slope has one sign.
-fn with_monotone_rates(problem: &Problem<'_>) -> Option<(Candidate, Declaration)> {
+pub(super) fn with_monotone_rates(problem: &Problem<'_>) -> Option<(Candidate, Declaration)> {
     let (plant, arena) = (problem.plant, problem.arena);
     let hidden: BTreeSet<Symbol> = problem.x.iter().copied().collect();
     let formulas =
@@ -344,7 +352,8 @@ fn with_monotone_rates(problem: &Problem<'_>) -> Option<(Candidate, Declaration)
     let is_open = |expr: &Expr| is_plane(expr) && !is_signed(*expr) && !is_signed(arena.neg(*expr));
     let open: BTreeSet<Expr> = slopes.flat_map(parts).filter(is_open).collect();
     // Of more, no one sign is likely.
-    let [factor] = Vec::from_iter(open)[..] else { return None };
+    let open: Vec<Expr> = open.into_iter().collect();
+    let [factor] = open[..] else { return None };
     [factor, arena.neg(factor)].into_iter().take_while(|_| problem.goes_on()).find_map(|positive| {
         let plant = plant.with_positive_expression(positive);
         let there = Problem::of(&plant);

@@ -85,8 +85,12 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         candidates.splice(0..0, local);
     }
     if !is_found(&candidates) && plant.monotone_regression {
-        let monotone = at_estimate::found(&problem, AtEstimate::Monotone, &candidates).filter(Candidate::is_full);
-        candidates.splice(0..0, monotone);
+        let is_monotone = |found: &Candidate| {
+            found.is_full()
+                && found.derivation.at_estimate() == Some(AtEstimate::Monotone)
+                && class.is_none_or(|class| class == found.derivation.class)
+        };
+        candidates.splice(0..0, at_estimate::found(&problem, AtEstimate::Monotone, &candidates).filter(is_monotone));
     }
     if !is_found(&candidates) {
         let known = || known::from_known_start(&problem, class, &accepted);
@@ -129,7 +133,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
     let symmetry = || plant.arena.budget().share(FOR_SYMMETRY, || symmetry::symmetry(&problem)).ok().flatten();
     let symmetry = if found || !is_start_unknown { None } else { symmetry() };
     let is_asked = plant.local_regression.is_some();
-    let mut declared = || declared(&problem, &mut candidates, class, symmetry.as_ref(), is_asked);
+    let admitted = (plant.monotone_regression, is_asked);
+    let mut declared = || declared(&problem, &mut candidates, class, symmetry.as_ref(), admitted);
     let declared = if found { Vec::new() } else { declared() };
     // A plant that lacks only a sign or an order is as yet undecided: with its declaration there is an observer.
     let decides = |(_, declaration): &(Candidate, Declaration)| declaration.is_of_domain();
@@ -155,11 +160,19 @@ fn declared(
     candidates: &mut Vec<Candidate>,
     class: Option<Class>,
     symmetry: Option<&Symmetry>,
-    local_is_asked: bool,
+    (admits_monotone, local_is_asked): (bool, bool),
 ) -> Vec<(Candidate, Declaration)> {
     let is_open = !candidates.iter().any(Candidate::hides_states);
     let helpful = || if is_open { declaration::helpful(problem, candidates, symmetry, class, &accepted) } else { None };
     let helpful = declaration::without_unseen(problem, class, &accepted).or_else(helpful);
+    let monotone = || match (is_open, admits_monotone) {
+        (true, true) => declaration::with_monotone_rates(problem),
+        (true, false) if !local_is_asked => at_estimate::found(problem, AtEstimate::Monotone, candidates)
+            .filter(|found| found.is_full() && found.derivation.at_estimate() == Some(AtEstimate::Monotone))
+            .map(|found| (found, Declaration::Monotone)),
+        _ => None,
+    };
+    let helpful = helpful.or_else(monotone);
     if let Some(helpful) = helpful {
         return vec![helpful];
     }

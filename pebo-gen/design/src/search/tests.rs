@@ -257,6 +257,10 @@ fn a_monotone_regression_is_found() {
     let [(candidate, declared)] = &offered.declared[..] else { panic!("{:?}", offered.declared) };
     assert_eq!((offered.verdict, candidate.is_full()), (SearchVerdict::Undecided, true));
     assert_eq!(declared.lines(&turbine), "`assume: [3*w - v > 0]`");
+    // Of a given transform the refusal says how to have it.
+    let given = solve(&plant(&format!("{drag}\nphi: [n]")), None);
+    let declared: Vec<&Declaration> = given.declared.iter().map(|(_, declaration)| declaration).collect();
+    assert_eq!((given.verdict, declared), (SearchVerdict::Undecided, vec![&Declaration::Monotone]));
 }
 
 /// Haldane's kinetics: with its denominator multiplied, the rate holds the square of a component.

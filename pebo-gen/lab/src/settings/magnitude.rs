@@ -69,7 +69,7 @@ impl Deviations {
             |symbol: Symbol| point.of_symbol(symbol).map(f64::abs).filter(|size| *size > 0.0).unwrap_or(UNIT);
         let simulated = |symbol: Symbol| model.simulation.as_ref()?.deviation(&arena.name(symbol));
         // A plant that starts at rest has its rates later.
-        let along = shown.along(point);
+        let along = point.along(shown);
         let x: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
         let y: Vec<Symbol> = plant.y.iter().map(|output| output.symbol).collect();
         let sensor = |symbol: &Symbol| {

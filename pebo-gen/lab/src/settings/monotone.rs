@@ -21,7 +21,7 @@ use super::digits::rounded;
 use super::magnitude::Deviations;
 use super::point::Point;
 #[cfg(feature = "simulate")]
-use super::prediction::Prediction;
+use super::prediction::{Prediction, UNWEIGHED};
 use super::shown::Shown;
 use super::spread::Slopes;
 use super::start::beginning;
@@ -89,7 +89,7 @@ pub(super) fn derive(
         return None;
     };
     let deviations = Deviations::of(model, plant, &known, (shown, Some(period)), true)?;
-    let mean = mean_squares(&shown.along(&known), &slopes)?;
+    let mean = mean_squares(&known.along(shown), &slopes)?;
     let states: Vec<Symbol> = plant.x.iter().map(|state| state.symbol).collect();
     let drift = Slopes::new(plant, &transform, &states).variances(&known, &deviations.disturbance)?;
     let total: f64 = mean.iter().sum();
@@ -144,10 +144,6 @@ pub(super) fn derive(
         prediction: Prediction::None(UNWEIGHED),
     })
 }
-
-/// The reason why no standard errors are predicted.
-#[cfg(feature = "simulate")]
-pub(super) const UNWEIGHED: &str = "a gradient keeps no covariance";
 
 /// The mean squares of formulas at these points.
 fn mean_squares(points: &[Point], formulas: &[Expr]) -> Option<Vec<f64>> {

@@ -23,6 +23,15 @@ pub(super) struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
+    /// The points along the course of samples, with the numbers of this one for all other symbols; this alone where there are
+    /// no samples.
+    pub(super) fn along(&self, shown: &Shown) -> Vec<Self> {
+        match shown.course.as_slice() {
+            [] => vec![self.clone()],
+            course => course.iter().map(|row| self.with(&shown.signals, row)).collect(),
+        }
+    }
+
     /// The start of the plant: the first samples, and besides what the model says; a formula that has no value there is
     /// left out.
     pub(super) fn of(model: &Model, plant: &'a Plant, shown: &Shown) -> Self {

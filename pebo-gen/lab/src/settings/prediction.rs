@@ -35,6 +35,9 @@ impl Prediction {
     }
 }
 
+/// The reason for a gradient.
+pub(super) const UNWEIGHED: &str = "a gradient keeps no covariance";
+
 /// The reason for a regression through a filter.
 const FILTERED: &str = "the filter makes the noise of one sample that of all later ones too";
 

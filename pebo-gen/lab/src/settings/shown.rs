@@ -7,8 +7,6 @@ use std::collections::BTreeMap;
 use pebo_cas::Symbol;
 use pebo_design::model::Model;
 
-use super::point::Point;
-
 /// What samples show besides the model; nothing, where there are none yet.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
@@ -36,15 +34,6 @@ impl Shown {
     #[cfg(feature = "simulate")]
     pub(crate) fn period(&self) -> Option<f64> {
         self.period
-    }
-
-    /// The points along the course of the samples, from one with the numbers of all other symbols; this alone where there are
-    /// no samples.
-    pub(super) fn along<'a>(&self, point: &Point<'a>) -> Vec<Point<'a>> {
-        match self.course.as_slice() {
-            [] => vec![point.clone()],
-            course => course.iter().map(|row| point.with(&self.signals, row)).collect(),
-        }
     }
 
     /// The period of the samples: that of a recording counts more than that of a simulation, and this more than one that

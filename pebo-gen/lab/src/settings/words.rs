@@ -8,8 +8,7 @@ use pebo_design::plant::Plant;
 
 use super::kind::ObserverKind;
 use super::magnitude::Deviations;
-use super::monotone::UNWEIGHED;
-use super::prediction::Prediction;
+use super::prediction::{Prediction, UNWEIGHED};
 use super::shown::Shown;
 
 /// The known numbers of sensors, start and disturbances, with the derived ones.

@@ -250,10 +250,8 @@ fn of_numbers(summary: &Summary, slowest: &EstimateScore, origin: Origin<'_>, di
         }
         (Some(_), _) => diagnostic.note(note + &departed).help(mended),
         (None, Some(expected)) if rms <= WITHIN * expected => {
-            let help = if trend < FALLING {
+            let help = if trend < FALLING || is_undisturbed(summary) {
                 "simulate longer, or record more, as the observer averages what its sensors err by; or take a better sensor"
-            } else if is_undisturbed(summary) {
-                "take a better sensor: a longer run averages no more of what its samples err by"
             } else {
                 "choose a lower `disturbance` under `observer`, which averages more samples, or a better sensor"
             };

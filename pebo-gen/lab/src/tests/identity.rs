@@ -17,7 +17,7 @@ use crate::experiment::layout::time;
 use crate::{Overrides, Scenario};
 use pebo_cas::{Expr, Symbol};
 use pebo_design::analysis::Derivation;
-use pebo_design::model::{Model, Observer};
+use pebo_design::model::{Model, Observer, RegressionForm};
 use pebo_design::plant::Plant;
 use pebo_design::program::{Interpreter, lower};
 
@@ -53,9 +53,11 @@ impl Loop {
         // In the output form outputs are among the coordinates.
         if !model.observer.has_gains() {
             let extension = std::mem::take(&mut model.observer.extension);
+            // A monotone regression takes its samples one by one.
+            let is_monotone = model.regression_form.as_ref().is_some_and(|form| form.value == RegressionForm::Monotone);
+            let gains = if is_monotone { "observer: {window: 1, gain: 1}" } else { PENDULUM };
             let gains =
-                read(&format!("model: m\nx: [p]\ny: [q]\nu: [tau]\nf_x: {{p: tau}}\nf_y: {{q: p}}\n{PENDULUM}"))
-                    .unwrap();
+                read(&format!("model: m\nx: [p]\ny: [q]\nu: [tau]\nf_x: {{p: tau}}\nf_y: {{q: p}}\n{gains}")).unwrap();
             model.observer = Observer { extension, ..gains.observer };
         }
         if let Some(simulation) = &mut model.simulation {

@@ -148,6 +148,14 @@ pub(super) fn no_local_one(span: Span) -> Diagnostic {
         .help("measure another signal")
 }
 
+/// Reports that no regression was found to be monotone.
+pub(super) fn no_monotone_one(plant: &Plant) -> Diagnostic {
+    let span = plant.phi.first().map_or(Span::NOWHERE, |phi| phi.span);
+    open(span, "no regression was found that is monotone in the unknowns".to_owned())
+        .note("it needs a plain cascade, and equations of one component of phi each, whose slopes by it have one sign")
+        .help("bound the states under `assume` to where the slopes have one sign, or write `regression: local`")
+}
+
 /// Reports that no regression has the chosen form.
 pub(super) fn no_such_form(plant: &Plant, (form, span): (RelationForm, Span)) -> Diagnostic {
     let (how, needs, other) = match form {

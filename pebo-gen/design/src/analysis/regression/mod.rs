@@ -33,7 +33,7 @@ use std::cell::OnceCell;
 use super::design::{Claim, Verdict};
 use super::identifiability::undecided::not_all_used;
 use super::limited::limited;
-use crate::plant::Plant;
+use crate::plant::{Plant, TransformOrigin};
 use crate::source::Diagnostic;
 use build::Obstruction;
 use pool::{Pool, Rest};
@@ -84,7 +84,7 @@ fn prove_from(premises: Premises<'_>, found: &mut Vec<Diagnostic>) -> Claims {
     let is_beyond = !tried.failures.iter().any(is_refused);
     match is_beyond.then(|| monotone::decided(&pool)).flatten() {
         Some(monotone) => monotone.claims(found),
-        None => tried.conclude(&pool, found),
+        None => tried.conclude(&pool, found).beyond_linear(premises.plant, found),
     }
 }
 
@@ -122,6 +122,18 @@ fn linear(pool: &Pool<'_>, tried: &mut Tried) -> Option<Trial> {
         }
     }
     None
+}
+
+impl Claims {
+    /// The same, where a monotone regression is asked for: that there is no linear one refutes none of these.
+    fn beyond_linear(mut self, plant: &Plant, found: &mut Vec<Diagnostic>) -> Self {
+        let is_asked = plant.monotone_regression && plant.origin == TransformOrigin::Given;
+        if is_asked && self.regression.verdict == Verdict::Refuted {
+            self.regression.verdict = Verdict::Undecided;
+            found.insert(0, diagnostics::no_monotone_one(plant));
+        }
+        self
+    }
 }
 
 impl Tried {

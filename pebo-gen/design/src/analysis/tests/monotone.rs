@@ -5,12 +5,13 @@ use crate::analysis::{AtEstimate, Derivation, Outcome, UnusedReason};
 use crate::plant::Plant;
 
 fn sense(lines: &str) -> Option<AtEstimate> {
-    let (_, derivation) = derive(lines);
+    let asked = if lines.contains("regression: ") { "" } else { "\nregression: monotone" };
+    let (_, derivation) = derive(&[lines, asked].concat());
     (derivation.outcome == Outcome::Accepted).then(|| derivation.at_estimate()).flatten()
 }
 
 fn monotone(lines: &str) -> (Plant, Derivation) {
-    let (plant, derivation) = derive(lines);
+    let (plant, derivation) = derive(&format!("{lines}\nregression: monotone"));
     assert_eq!((derivation.outcome, codes(&derivation)), (Outcome::Accepted, Vec::new()), "{lines}");
     assert_eq!(derivation.at_estimate(), Some(AtEstimate::Monotone), "{lines}");
     (plant, derivation)
@@ -96,6 +97,14 @@ fn other_equations_are_left_out() {
         unused.iter().map(|left| (left.output, left.reason)).collect::<Vec<_>>(),
         [(1, UnusedReason::NotMonotone)]
     );
+}
+
+/// The claims on a given transform are those of a linear regression, unless the model asks for another.
+#[test]
+fn a_given_transform_asks_for_it() {
+    let lines = format!("{TURBINE}\nassume: [w > 0, v > 0, v < 3*w]");
+    assert_ne!(derive(&lines).1.outcome, Outcome::Accepted);
+    monotone(&lines);
 }
 
 /// Linear equations are exact; under a fundamental matrix the gradient of z is not that of theta; and who asks for a local

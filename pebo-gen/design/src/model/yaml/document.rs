@@ -31,7 +31,7 @@ section! {
         class: Option<Spanned<CascadeClass>>, "class: pebo",
             "The cascade that is asked for; if left out, a plain one (pebo) is preferred unless a generalised one (gpebo) takes fewer samples unfiltered or needs fewer conditions";
         regression: Option<Spanned<RegressionForm>>, "regression: static",
-            "How a relation between the components of phi becomes a regression: as it holds at every instant, or differentiated, which has fewer unknowns; if left out, an identity of the model is used as it is written, and a relation that was found is differentiated where that gives fewer unknowns. With `local`, the equations of all outputs are used, those that are not linear in functions of theta to first order at the estimate, which then converges from a neighbourhood";
+            "How a relation between the components of phi becomes a regression: as it holds at every instant, or differentiated, which has fewer unknowns; if left out, an identity of the model is used as it is written, and a relation that was found is differentiated where that gives fewer unknowns. With `monotone`, equations that are monotone in one unknown each are used where none are linear in functions of theta, as without `phi`. With `local`, the equations of all outputs are used, those that are not linear in functions of theta to first order at the estimate, which then converges from a neighbourhood";
         define: Definitions, "define: {p: v2*i1}", "Names for parts of formulas and for tables, in any order";
         assume: Vec<Comparison>, "assume: [L1 > 0, 0 < d < 1]", "Inequalities that hold wherever the plant operates";
         f_x: Formulas, "f_x: {i1: (E - (1 - d)*v2)/L1}", "The time derivative of each unmeasured state",
