@@ -403,3 +403,51 @@ fn the_extension_begins_where_the_plant_is_known_to_start() {
     let (settings, problems) = derived(&format!("{cart}{gains}").replace("l: 0.25", "l: null"));
     assert!(settings.is_none() && problems[0].message.contains("`l`, which has no value"), "{problems:?}");
 }
+
+const EXPONENT: &str = "model: exponent\nx: [n]\ny: [v]\nu: [F]\nf_x: {n: 0}\nf_y: {v: F - exp(n*v)}\nphi: [n]\nregression: monotone\n\
+                        simulation: {step: 0.01, initial: {n: 1, v: 1}, control: {F: 3}}\n";
+
+/// A monotone regression has the gradient on single samples, from slopes of e = 2.718 here: of a speed of 5 in a thousand
+/// samples, or of that at which noise and drift add the least, `cbrt(q^2 e^2/(4 s^2))`.
+#[test]
+fn a_monotone_regression_has_a_normalised_gradient() {
+    let square = std::f64::consts::E.powi(2);
+    for (observer, speed) in [
+        ("", 0.5_f64),
+        ("observer: {sensors: {v: 0.01}, start: {n: 1}, disturbance: {n: 0.1}}\n", (square * 0.01 / 4e-4).cbrt()),
+        // Ten samples to a time constant at least.
+        ("observer: {sensors: {v: 1e-6}, start: {n: 1}, disturbance: {n: 1}}\n", 10.0),
+    ] {
+        let (settings, problems) = derived(&format!("{EXPONENT}{observer}"));
+        let settings = settings.unwrap_or_else(|| panic!("{problems:?}"));
+        let Estimator::NormalisedGradient { gain, mu } = &settings.estimator else { panic!("{settings:?}") };
+        // In four digits.
+        let is_near = |value: &Rational, wanted: f64| (value.to_f64() / wanted - 1.0).abs() < 1e-3;
+        assert!(is_near(mu, 100.0 / square) && is_near(&gain[0], 101.0 * speed / square), "{gain:?} {mu:?}");
+        assert_eq!(
+            (settings.operator, settings.rebase),
+            (Operator::Window(Rational::ONE), Some(Rebase::Samples(Rational::ONE)))
+        );
+    }
+}
+
+#[test]
+fn settings_with_memory_do_not_go_with_a_monotone_regression() {
+    for (key, section) in [
+        ("filter", "{filter: 10, gain: 1}"),
+        ("window", "{window: 5, gain: 1}"),
+        ("covariance", "{estimator: least-squares, window: 1, covariance: [1]}"),
+        ("gate", "{sensors: {v: 0.1}, gate: 25}"),
+        ("form", "{form: output}"),
+        ("rebase", "{window: 1, gain: 1, rebase: 5}"),
+    ] {
+        let (settings, problems) = derived(&format!("{EXPONENT}observer: {section}\n"));
+        let said: Vec<&str> = problems.iter().map(|problem| &*problem.message).collect();
+        assert!(
+            settings.is_none() && said.len() == 1 && said[0].starts_with(&format!("`{key}`")),
+            "{section}: {said:?}"
+        );
+    }
+    let (settings, problems) = derived(&format!("{EXPONENT}observer: {{window: 1, gain: 1}}\n"));
+    assert!(settings.is_some() && problems.is_empty(), "{problems:?}");
+}

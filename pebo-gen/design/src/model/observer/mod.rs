@@ -17,7 +17,7 @@ section! {
             "The standard deviation of each output's samples, from which with `start` and `disturbance` all gains are derived; that of `noise` and `quantisation` together, or a thousandth of the output at the start, if left out"
             => of(Names::Y), positive("the standard deviation of a sensor must be positive");
         start: Each, "start: {i1: 5}",
-            "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out (once the state with `regression: local`)"
+            "How wrong the estimate of each state can be at the start, a standard deviation; ten times the state, or 10 of its unit, if left out (once the state with a `local` or monotone regression)"
             => of(Names::X), deviation();
         disturbance: Each, "disturbance: {i1: 0.1}",
             "By how much a state or output drifts besides its rate, in its unit per root second; 0 if left out beside `sensors` or `start`"
@@ -74,7 +74,7 @@ section! {
             "The longest time in seconds from one accepted sample to the next; after a longer one the observer begins anew"
             => positive("the longest gap must be positive");
         extension: Numbers, "extension: [0, 0]",
-            "The dynamic extension at the start: one number for each component; if left out, zeros, or where phi_left has no value at zero, or with `regression: local`, phi of half the state at which the simulation begins";
+            "The dynamic extension at the start: one number for each component; if left out, zeros, or where phi_left has no value at zero, or with a `local` or monotone regression, phi of half the state at which the simulation begins";
     }
 }
 
