@@ -93,8 +93,8 @@ pub trait Model<const NX: usize, const NY: usize, const NU: usize, const NZ: usi
 
     /// True if the regression is one to first order in `theta`: `phi_0` is the equation where the extension is `z`, and
     /// `phi_1` its slope by `theta` there. The observer must then be [re-based](crate::Observer::rebasing) at every
-    /// sample: it is recursive Gauss-Newton (Ljung, *System identification*, 1999, Section 11.4), and converges from a
-    /// neighbourhood.
+    /// sample. With least squares it is recursive Gauss-Newton (Ljung, *System identification*, 1999, Section 11.4), and
+    /// converges from a neighbourhood; with a gradient it converges from farther where the equations are monotone.
     const LOCAL: bool = false;
 
     /// [`LOCAL`](Self::LOCAL), for a model of which only the run knows it.
