@@ -289,6 +289,7 @@ impl<'a> DomainPoint<'a> {
                 all(factors, &self.values).iter().zip(theta).map(|(slope, theta)| slope.value * theta).sum();
             // Of a static equation the known side is on the left.
             let error = if claims.kind == "static" { -error } else { error };
+            // Rounded to zero either may have any sign.
             if error * along < -TOLERANCE * error.abs().max(along.abs()) {
                 self.found.push(format!("row {} is not monotone: {error}, {along}; {}", row + 1, self.place));
             }

@@ -214,41 +214,34 @@ impl Plant {
     /// The same plant where these are positive.
     #[must_use]
     pub fn with_positive(&self, symbols: &[Symbol]) -> Self {
-        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
-        let mut plant = self.clone();
-        let assumed =
-            |symbol: &Symbol| Assumption { expr: self.arena.of_symbol(*symbol), relation: Relation::Positive, span };
-        plant.assumptions.extend(symbols.iter().map(assumed));
-        plant
+        self.with_positive_expressions(symbols.iter().map(|symbol| self.arena.of_symbol(*symbol)))
     }
 
     /// The same plant where the first of these is larger than the second.
     #[must_use]
     pub fn with_larger(&self, larger: Symbol, smaller: Symbol) -> Self {
-        self.with_positive_expression(self.arena.sub(self.arena.of_symbol(larger), self.arena.of_symbol(smaller)))
+        self.with_positive_expressions([self.arena.sub(self.arena.of_symbol(larger), self.arena.of_symbol(smaller))])
     }
 
-    /// The same plant where an expression is positive.
+    /// The same plant where these expressions are positive.
     #[must_use]
-    pub fn with_positive_expression(&self, expr: Expr) -> Self {
+    pub fn with_positive_expressions(&self, positive: impl IntoIterator<Item = Expr>) -> Self {
         let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
         let mut plant = self.clone();
-        plant.assumptions.push(Assumption { expr, relation: Relation::Positive, span });
+        let assumed = |expr| Assumption { expr, relation: Relation::Positive, span };
+        plant.assumptions.extend(positive.into_iter().map(assumed));
         plant
     }
 
     /// The same plant where these are between the negatives of bounds and the bounds.
     #[must_use]
     pub fn within_bounds(&self, bounds: &[(Symbol, Expr)]) -> Self {
-        let span = self.x.first().map_or(Span::NOWHERE, |state| state.rate.span);
         let arena = &self.arena;
-        let mut plant = self.clone();
         let sides = bounds.iter().flat_map(|(symbol, most)| {
             let value = arena.of_symbol(*symbol);
             [arena.add(*most, value), arena.sub(*most, value)]
         });
-        plant.assumptions.extend(sides.map(|expr| Assumption { expr, relation: Relation::Positive, span }));
-        plant
+        self.with_positive_expressions(sides)
     }
 
     /// The same plant without these states, on which nothing else depends, and what is assumed of them.

@@ -14,6 +14,12 @@ use super::problem::Problem;
 /// The share of the remaining budget for each transform.
 const SHARE: u64 = 2;
 
+/// The first transform whose regression is monotone, with all claims proved.
+pub(super) fn monotone(problem: &Problem<'_>, candidates: &[Candidate]) -> Option<Candidate> {
+    let is_monotone = |found: &Candidate| found.derivation.at_estimate() == Some(AtEstimate::Monotone);
+    found(problem, AtEstimate::Monotone, candidates).filter(Candidate::is_full).filter(is_monotone)
+}
+
 /// The first such transform: the states, or one of the candidates.
 pub(super) fn found(problem: &Problem<'_>, sense: AtEstimate, candidates: &[Candidate]) -> Option<Candidate> {
     let arena = problem.arena;

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::analysis::{AtEstimate, Class, Verdict};
+use crate::analysis::{Class, Verdict};
 use crate::plant::Plant;
 use crate::source;
 use pebo_cas::forms::tidy;
@@ -212,7 +212,7 @@ fn with_smooth_formulas(
         _ => vec![walls],
     };
     sides.into_iter().take_while(|_| problem.goes_on()).find_map(|side| {
-        let there = side.iter().fold(plant.clone(), |plant, positive| plant.with_positive_expression(*positive));
+        let there = plant.with_positive_expressions(side.iter().copied());
         let candidate = arena.budget().share(SHARE, || accepted(&there, class))?;
         Some((candidate, Declaration::Assumed(side)))
     })
@@ -355,9 +355,8 @@ pub(super) fn with_monotone_rates(problem: &Problem<'_>) -> Option<(Candidate, D
     let open: Vec<Expr> = open.into_iter().collect();
     let [factor] = open[..] else { return None };
     [factor, arena.neg(factor)].into_iter().take_while(|_| problem.goes_on()).find_map(|positive| {
-        let plant = plant.with_positive_expression(positive);
-        let there = Problem::of(&plant);
-        let candidate = at_estimate::found(&there, AtEstimate::Monotone, &[]).filter(Candidate::is_full)?;
+        let there = plant.with_positive_expressions([positive]);
+        let candidate = at_estimate::monotone(&Problem::of(&there), &[])?;
         Some((candidate, Declaration::Assumed(vec![positive])))
     })
 }

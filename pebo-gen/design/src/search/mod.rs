@@ -85,12 +85,8 @@ pub fn solve(plant: &Plant, class: Option<Class>) -> Search {
         candidates.splice(0..0, local);
     }
     if !is_found(&candidates) && plant.monotone_regression {
-        let is_monotone = |found: &Candidate| {
-            found.is_full()
-                && found.derivation.at_estimate() == Some(AtEstimate::Monotone)
-                && class.is_none_or(|class| class == found.derivation.class)
-        };
-        candidates.splice(0..0, at_estimate::found(&problem, AtEstimate::Monotone, &candidates).filter(is_monotone));
+        let is_of_class = |found: &Candidate| class.is_none_or(|class| class == found.derivation.class);
+        candidates.splice(0..0, at_estimate::monotone(&problem, &candidates).filter(is_of_class));
     }
     if !is_found(&candidates) {
         let known = || known::from_known_start(&problem, class, &accepted);
@@ -167,9 +163,9 @@ fn declared(
     let helpful = declaration::without_unseen(problem, class, &accepted).or_else(helpful);
     let monotone = || match (is_open, admits_monotone) {
         (true, true) => declaration::with_monotone_rates(problem),
-        (true, false) if !local_is_asked => at_estimate::found(problem, AtEstimate::Monotone, candidates)
-            .filter(|found| found.is_full() && found.derivation.at_estimate() == Some(AtEstimate::Monotone))
-            .map(|found| (found, Declaration::Monotone)),
+        (true, false) if !local_is_asked => {
+            at_estimate::monotone(problem, candidates).map(|found| (found, Declaration::Monotone))
+        }
         _ => None,
     };
     let helpful = helpful.or_else(monotone);

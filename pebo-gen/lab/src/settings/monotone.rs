@@ -45,6 +45,16 @@ pub(super) fn refused(model: &Model, derivation: &Derivation) -> Option<Diagnost
         return None;
     }
     let written = &model.observer;
+    let gains = ["estimator", "gain", "normalisation"].into_iter().find_map(|key| written.span_of(key));
+    let gains = gains.or_else(|| written.estimator.as_ref().map(|estimator| estimator.span));
+    if let (Some(span), None, None, None) = (gains, &written.window, &written.filter, written.known()) {
+        let message = "the gradient of a monotone regression needs `window: 1`";
+        return Some(
+            Diagnostic::error(Code::SimulationIncomplete, span, message)
+                .note("its proof is of samples one by one")
+                .help("add `window: 1` under `observer`"),
+        );
+    }
     let is_one = |window: &pebo_design::model::Decimal| (window.to_f64() - 1.0).abs() < f64::EPSILON;
     let filter = written.filter.as_ref().map(|filter| ("filter", filter.span));
     let window = written.window.as_ref().filter(|window| !is_one(&window.value)).map(|window| ("window", window.span));

@@ -448,6 +448,8 @@ fn settings_with_memory_do_not_go_with_a_monotone_regression() {
             "{section}: {said:?}"
         );
     }
+    let (_, problems) = derived(&format!("{EXPONENT}observer: {{gain: 1}}\n"));
+    assert!(problems[0].help.as_ref().is_some_and(|help| help.contains("`window: 1`")), "{problems:?}");
     let (settings, problems) = derived(&format!("{EXPONENT}observer: {{window: 1, gain: 1}}\n"));
     assert!(settings.is_some() && problems.is_empty(), "{problems:?}");
 }

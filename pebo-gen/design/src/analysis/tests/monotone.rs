@@ -3,6 +3,7 @@
 use super::{codes, derive};
 use crate::analysis::{AtEstimate, Derivation, Outcome, UnusedReason};
 use crate::plant::Plant;
+use crate::source::Code;
 
 fn sense(lines: &str) -> Option<AtEstimate> {
     let asked = if lines.contains("regression: ") { "" } else { "\nregression: monotone" };
@@ -105,6 +106,9 @@ fn a_given_transform_asks_for_it() {
     let lines = format!("{TURBINE}\nassume: [w > 0, v > 0, v < 3*w]");
     assert_ne!(derive(&lines).1.outcome, Outcome::Accepted);
     monotone(&lines);
+    // That there is no linear one refutes nothing then.
+    let (_, open) = derive(&format!("{TURBINE}\nassume: [w > 0, v > 0]\nregression: monotone"));
+    assert_eq!((open.outcome, codes(&open)[0]), (Outcome::Undecided, Code::RegressionUndecided));
 }
 
 /// Linear equations are exact; under a fundamental matrix the gradient of z is not that of theta; and who asks for a local
